@@ -1,0 +1,55 @@
+# make demo   see the axis run on ROS 2, recorded and compared
+# make test   lint, types and tests, as continuous integration runs them
+# make bench  print the tables of benchmarks/
+#
+# Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
+# (~/.ros unless set otherwise).
+#   PYTHON=python3.12       the Python to use; else the first suitable one is found
+#   RIG=path                recordings of a test rig for the demo
+#   DEMO="--seconds 5"      further options of `pneumo demo`
+#   PYTEST="-k records -x"  further options of pytest
+
+SHELL := /bin/sh
+PYTHON ?=
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/ready
+RIG ?= ../shared/rig
+
+# A sourced ROS 2 distribution must not reach into the environment, nor the marks of another environment's wheels.
+unexport PYTHONPATH PYTHONHOME LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+unexport AMENT_PREFIX_PATH COLCON_PREFIX_PATH CMAKE_PREFIX_PATH
+unexport ROS_DISTRO ROS_VERSION ROS_PYTHON_VERSION RMW_IMPLEMENTATION
+
+ifeq ($(PIP_CACHE_DIR),)
+export PIP_CACHE_DIR := $(CURDIR)/.cache/pip
+endif
+# ROS writes its logs below the home folder, and refuses to start without one.
+ifeq ($(HOME)$(ROS_HOME),)
+export ROS_HOME := $(CURDIR)/.cache/ros
+endif
+
+.PHONY: help demo test bench clean
+.DELETE_ON_ERROR:
+
+help:
+	@sed -n '/^#/!q; s/^# \{0,1\}//p' Makefile
+
+$(READY): setup.py tools/make_venv
+	@tools/make_venv $(VENV) $(PYTHON)
+	@touch $@
+
+demo: $(READY)
+	@$(BIN)/pneumo demo $(DEMO)
+
+test: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest $(PYTEST)
+
+bench: $(READY)
+	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done
+
+clean:
+	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info

@@ -1,0 +1,73 @@
+"""Packaging for pip (`pip install .`, `pip install -e .`) and for colcon (ament_python): one file serves both."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = "pneumo_ros"
+
+# Real rclpy without a ROS 2 distribution: x86_64 Linux, Python 3.10 to 3.13. On a distribution these come from
+# apt, so they stay out of install_requires.
+ROS_WHEELS = [
+    "ros-kilted-rclpy",
+    "ros-kilted-rmw-fastrtps-cpp",
+    "ros-kilted-diagnostic-msgs",
+    "ros-kilted-geometry-msgs",
+    "ros-kilted-sensor-msgs",
+    "ros-kilted-std-msgs",
+    "ros-kilted-std-srvs",
+    "ros-kilted-trajectory-msgs",
+    "ros-rosgraph-msgs",
+]
+TEST = ["pytest>=7.4"]
+DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel"]
+
+
+def files(folder: str, pattern: str) -> list[str]:
+    """Files under `folder` that match, as setup() wants them: relative to this file, sorted."""
+    return sorted(str(path) for path in Path(folder).glob(pattern) if path.is_file())
+
+
+def shared(folder: str, target: str) -> list[tuple[str, list[str]]]:
+    """data_files rows that keep the sub-folders of `folder` under share/pneumo_ros/`target`."""
+    rows: dict[str, list[str]] = {}
+    for name in files(folder, "**/*"):
+        inner = Path(name).parent.relative_to(folder)
+        if "__pycache__" not in inner.parts:
+            rows.setdefault(str(Path("share") / NAME / target / inner), []).append(name)
+    return sorted(rows.items())
+
+
+setup(
+    name=NAME,
+    version="0.1.0",
+    description="A pneumatic axis for ROS 2: simulate it, control it, record it, and find what its model is missing",
+    long_description=Path("README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
+    maintainer="pneumo_ros maintainers",
+    maintainer_email="maintainers@pneumo-ros.example",
+    license="Apache-2.0",
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    # Machine files are read through importlib.resources, so they travel inside the package; share/ holds the copy
+    # that ROS users expect. An editable install has no share/.
+    package_data={NAME: ["py.typed", *(str(Path(f).relative_to(NAME)) for f in files(f"{NAME}/config", "**/*"))]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        *shared(f"{NAME}/config", "config"),
+        *shared("launch", "launch"),
+    ],
+    zip_safe=False,
+    python_requires=">=3.10",
+    install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap"],
+    extras_require={"ros": ROS_WHEELS, "test": TEST, "dev": TEST + DEV},
+    entry_points={
+        "console_scripts": [
+            "pneumo = pneumo_ros.command.main:main",
+            "simulator = pneumo_ros.ros.simulator:main",
+            "controller = pneumo_ros.ros.controller:main",
+            "recorder = pneumo_ros.ros.recorder:main",
+            "player = pneumo_ros.ros.player:main",
+        ],
+    },
+)

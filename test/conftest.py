@@ -1,0 +1,19 @@
+"""What every test shares: `import rig`, a ROS domain of its own, logs and kernels that stay out of the home folder."""
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+from pneumo_ros.environment import Domain
+
+TEST = Path(__file__).parent
+sys.path.insert(0, str(TEST))  # the independent simulator under test/rig imports as `rig`
+
+# Before anything imports rclpy: nodes of this session, here and in child processes, see each other and nobody else.
+DOMAIN = Domain()
+os.environ.update(DOMAIN.environment)
+os.environ.setdefault("ROS_LOG_DIR", tempfile.mkdtemp(prefix="pneumo_ros_log_"))
+os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
+# The wheels start Python a second time to find their libraries; a Python of another environment must do so itself.
+os.environ.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
