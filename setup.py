@@ -5,6 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = "pneumo_ros"
+HERE = Path(__file__).resolve().parent  # `colcon build --symlink-install` runs a link to this file from elsewhere
 
 # Real rclpy without a ROS 2 distribution: x86_64 Linux, Python 3.10 to 3.13. On a distribution these come from
 # apt, so they stay out of install_requires.
@@ -42,7 +43,7 @@ setup(
     name=NAME,
     version="0.1.0",
     description="A pneumatic axis for ROS 2: simulate it, control it, record it, and find what its model is missing",
-    long_description=Path("README.md").read_text(encoding="utf-8"),
+    long_description=(HERE / "README.md").read_text(encoding="utf-8"),
     long_description_content_type="text/markdown",
     maintainer="pneumo_ros maintainers",
     maintainer_email="maintainers@pneumo-ros.example",

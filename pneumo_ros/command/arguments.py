@@ -1,0 +1,72 @@
+"""Command line arguments: errors in the words of this package, and the options most verbs share."""
+
+import argparse
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NoReturn
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+
+if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse that raises UsageError, accepts no abbreviated options and answers a misspelt one with its nearest."""
+
+    def __init__(self, prog: str, description: str | None, epilog: str | None = None) -> None:
+        super().__init__(
+            prog=prog,
+            description=description,
+            epilog=epilog,
+            allow_abbrev=False,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+
+    def error(self, message: str) -> NoReturn:
+        """Raise UsageError instead of leaving the program."""
+        raise UsageError(f"{message}; type: {self.prog} --help")
+
+    def parse_strictly(self, arguments: Sequence[str]) -> argparse.Namespace:
+        """Parse, and refuse what is not understood."""
+        options, extra = self.parse_known_args(arguments)
+        if extra:
+            self.error(self._unknown(extra[0]))
+        return options
+
+    def _unknown(self, given: str) -> str:
+        if given.startswith("--"):
+            return unknown_name(
+                "option", given.partition("=")[0], [n for n in self._option_string_actions if n[:2] == "--"]
+            )
+        return f"unexpected argument '{given}'"
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """--model and --effects."""
+    parser.add_argument("--model", metavar="FILE", default="axis", help="machine file, or the name of a shipped one")
+    add_effects(parser)
+
+
+def add_effects(parser: argparse.ArgumentParser) -> None:
+    """--effects."""
+    parser.add_argument(
+        "--effects",
+        metavar="FILE.py",
+        action="append",
+        default=[],
+        help="file with effects of your own; may be repeated",
+    )
+
+
+def add_output(parser: argparse.ArgumentParser) -> None:
+    """--json and --quiet."""
+    parser.add_argument("--json", metavar="FILE", help="write the results as JSON too; - for stdout, instead of text")
+    parser.add_argument("--quiet", action="store_true", help="no messages and no progress")
+
+
+def chosen_model(options: argparse.Namespace) -> "Model":
+    """The model that --model and --effects ask for."""
+    from pneumo_ros.plant import load_model
+
+    return load_model(options.model, effects_files=tuple(options.effects))

@@ -1,0 +1,113 @@
+"""What a verb says: results on stdout, messages and progress on stderr, JSON where it is wanted."""
+
+import json
+import math
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TextIO
+
+from pneumo_ros.files import check_writable, write_whole
+
+
+class Console:
+    """Output of one command.
+
+    quiet: no messages and no progress; results and errors remain.
+    json_target: where `json` writes: a file, "-" for stdout (which then carries nothing else), or None.
+    """
+
+    def __init__(self, quiet: bool = False, json_target: str | None = None) -> None:
+        self.quiet = quiet
+        self.json_target = json_target
+        self._json_path = Path() if json_target in (None, "-") else check_writable(str(json_target))
+
+    def say(self, text: str = "") -> None:
+        """A result for a person to read."""
+        if self.json_target != "-":
+            print(text, flush=True)
+
+    def note(self, text: str) -> None:
+        """A message beside the results."""
+        if not self.quiet:
+            print(text, file=sys.stderr, flush=True)
+
+    def progress(self, title: str) -> "Progress":
+        """Progress of long work: `with console.progress("Comparing") as progress: ...; progress(0.4)`."""
+        return Progress(title, None if self.quiet else sys.stderr)
+
+    def json(self, data: dict[str, Any]) -> None:
+        """The results for a program, if one asked for them; numbers that are not finite become null."""
+        if self.json_target is None:
+            return
+        text = json.dumps(plain(data), indent=1, allow_nan=False) + "\n"
+        if self.json_target == "-":
+            sys.stdout.write(text)
+        else:
+            write_whole(self._json_path, text)
+
+
+def plain(value: Any) -> Any:
+    """`value` in the types of JSON: numpy scalars and arrays unpacked, NaN and infinities as None, paths as text."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    if hasattr(value, "tolist"):  # numpy, which need not be imported to be recognised
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return str(value) if isinstance(value, Path) else value
+
+
+def columns(rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> str:
+    """Rows of text as aligned columns, two spaces apart; the column numbers in `right` align to the right."""
+    widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
+
+    def line(row: Sequence[str]) -> str:
+        cells = (c.rjust(w) if i in right else c.ljust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True)))
+        return "  ".join(cells).rstrip()
+
+    return "\n".join(line(row) for row in rows)
+
+
+class Progress:
+    """Call it with the fraction done, 0 to 1. On a terminal it is one moving line; elsewhere one line per 10 %."""
+
+    WAIT = 0.5  # s; work that ends sooner shows nothing
+
+    def __init__(self, title: str, stream: TextIO | None) -> None:
+        self.title, self.stream = title, stream
+        self.moving = stream is not None and stream.isatty()
+        self._start, self._shown, self._drawn = time.monotonic(), 0, 0.0
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.stream is not None and self.moving and self._drawn:
+            self.stream.write("\r\x1b[K")
+            self.stream.flush()
+
+    def __call__(self, fraction: float) -> None:
+        now = time.monotonic()
+        if self.stream is None or now - self._start < self.WAIT:
+            return
+        percent = int(100 * min(max(fraction, 0.0), 1.0))
+        if self.moving:
+            self._draw(percent, now)
+        elif percent // 10 > self._shown:
+            self._shown = percent // 10
+            print(f"{self.title}: {10 * self._shown} %", file=self.stream, flush=True)
+
+    def _draw(self, percent: int, now: float) -> None:
+        if self.stream is None or now - self._drawn < 0.1:
+            return
+        self._drawn = now
+        self.stream.write(
+            f"\r{self.title} [{'#' * (percent // 4):<25}] {percent:3d} % {now - self._start:4.0f} s\x1b[K"
+        )
+        self.stream.flush()

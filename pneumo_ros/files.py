@@ -1,0 +1,69 @@
+"""Files and folders that appear whole or not at all."""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pneumo_ros.errors import UsageError
+
+
+def check_writable(path: str | Path) -> Path:
+    """`path` as a Path; UsageError when no file can be made there, so that long work is not done in vain."""
+    target = Path(path)
+    folder = target.parent
+    if not folder.is_dir():
+        raise UsageError(f"cannot write {target}: there is no folder {folder}; type: mkdir -p {folder}")
+    if target.is_dir():
+        raise UsageError(f"cannot write {target}: it is a folder; give a file name, such as {target / 'result.json'}")
+    if not os.access(folder, os.W_OK):
+        raise UsageError(f"cannot write {target}: no permission to write in {folder}")
+    return target
+
+
+def write_whole(path: str | Path, content: str | bytes) -> None:
+    """Write `content` (text as UTF-8) to `path`, replacing a file there in one step: readers see the old or the new."""
+    target = check_writable(path).resolve()  # a link stays a link
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    if target.exists() and not target.is_file():  # a device or pipe, such as /dev/null: nothing to replace
+        target.write_bytes(data)
+        return
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            os.fchmod(stream.fileno(), _usual_mode())
+            os.fsync(stream.fileno())
+        os.replace(name, target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def whole_folder(path: str | Path) -> Iterator[Path]:
+    """A folder to fill, which becomes `path` when the block ends well and vanishes when it does not.
+
+    UsageError when `path` exists or cannot be made.
+    """
+    target = Path(path)
+    if target.exists():
+        raise UsageError(f"{target} exists; name another folder, or remove it first: rm -r {target}")
+    if not target.parent.is_dir():
+        raise UsageError(f"cannot make {target}: there is no folder {target.parent}; type: mkdir -p {target.parent}")
+    # The folder keeps its name inside: some files in a recording are named after it.
+    around = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    try:
+        yield around / target.name
+        os.rename(around / target.name, target)
+    finally:
+        shutil.rmtree(around, ignore_errors=True)
+
+
+def _usual_mode() -> int:
+    """The permissions a newly made file gets; temporary files are made readable by their owner alone."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
