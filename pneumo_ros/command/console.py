@@ -85,9 +85,7 @@ class Progress:
     def __enter__(self) -> "Progress":
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *failure: object) -> None:
         if self.stream is not None and self.moving and self._drawn:
             self.stream.write("\r\x1b[K")
             self.stream.flush()
