@@ -1,0 +1,142 @@
+"""Compose a list of effects into the text of one kernel module.
+
+Data flow, not registration, decides the order: whoever reads a signal runs after all who write it. One step of length h
+is a Stormer-Verlet step (Hairer, Lubich, Wanner 2006, ch. I.1.4) made exponential where an effect returns a rate:
+
+    1. half a step of everything from the derivatives at the start;
+    2. velocities (states in m/s) take a whole step with the forces at mid step;
+    3. all other states take a whole step with the derivatives at mid step and the mean velocity.
+
+It is of second order, time-symmetric for elastic parts (no artificial damping or growth below omega h = 2), and a state
+with der_x = source - rate x moves by the exact solution for constant source and rate: stable for any rate h.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.effect import Effect, Function, Parameter
+from pneumo_ros.plant.emit import module_text
+from pneumo_ros.plant.signals import SIGNALS
+
+OBSERVED = (
+    "drive", "force", "friction", "opening", "port_flow_a", "port_flow_b", "y_measured", "p_a_measured", "p_b_measured",
+)  # fmt: skip
+_OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "y_measured")
+
+
+@dataclass(frozen=True)
+class Composition:
+    """Effects put together: states and parameters in kernel order, what can be observed, and the module text."""
+
+    effects: tuple[type[Effect], ...]
+    states: tuple[str, ...]
+    parameters: tuple[str, ...]  # dotted
+    observed: tuple[str, ...]
+    text: str
+
+    def parameter(self, dotted: str) -> Parameter:
+        """Specification of a parameter by its dotted name; UsageError with the nearest names."""
+        section, _, key = dotted.partition(".")
+        for effect in self.effects:
+            if effect.name == section and key in effect.parameters:
+                return effect.parameters[key]
+        raise UsageError(unknown_name("parameter", dotted, self.parameters))
+
+
+# names the generated entry points use themselves
+_RESERVED = frozenset(
+    [
+        "x",
+        "q",
+        "u",
+        "h",
+        "k",
+        "s",
+        "i",
+        "b",
+        "X",
+        "out",
+        "half",
+        "middle",
+        "elapsed",
+        "voltage",
+        "first",
+        "t0",
+        "stride",
+        "values",
+        "np",
+        "math",
+        "LANES",
+    ]
+)
+
+
+class Resolver:
+    """Knows what every name in the equations of a composition stands for."""
+
+    def __init__(self, effects: tuple[type[Effect], ...]) -> None:
+        self.effects = effects
+        self.states: dict[str, type[Effect]] = {}
+        self.owners: dict[str, list[str]] = {}
+        self.writers: dict[str, list[type[Effect]]] = {}
+        for effect in effects:
+            self._add(effect)
+
+    def _add(self, effect: type[Effect]) -> None:
+        for state in effect.states:
+            if state in self.states or state in SIGNALS or state in _RESERVED:
+                owner = self.states[state].name if state in self.states else "the kernel"
+                raise UsageError(
+                    f"state {state} of effect {effect.name} is already taken by {owner}; choose another letter"
+                )
+            self.states[state] = effect
+        for key in effect.parameters:
+            self.owners.setdefault(key, []).append(effect.name)
+        for name in effect.functions["equations"].writes if "equations" in effect.functions else ():
+            if name not in SIGNALS and not name.startswith(("der_", "rate_")):
+                raise UsageError(f"effect {effect.name} returns {name!r}. {unknown_name('signal', name, SIGNALS)}")
+            if name in SIGNALS and SIGNALS[name].kind == "input":
+                raise UsageError(f"effect {effect.name} returns {name}, which is an input and cannot be written")
+            self.writers.setdefault(name, []).append(effect)
+
+    def parameter(self, name: str, effect: type[Effect] | None) -> str | None:
+        """Kernel variable of the parameter an argument means: the effect's own, `effect__name`, or a unique one."""
+        if effect is not None and name in effect.parameters:
+            return f"{effect.name}__{name}"
+        owner, _, key = name.partition("__")
+        if key and owner in self.owners.get(key, ()):
+            return name
+        owners = self.owners.get(name, [])
+        if len(owners) > 1:
+            choices = ", ".join(f"{owner}__{name}" for owner in owners)
+            raise UsageError(
+                f"argument {name} of {effect.name if effect else 'a signal'} is ambiguous; write one of {choices}"
+            )
+        return f"{owners[0]}__{name}" if owners else None
+
+    def check(self, function: Function, effect: type[Effect]) -> None:
+        """UsageError naming the nearest known names when an argument stands for nothing."""
+        for name in function.reads:
+            if name not in self.states and name not in SIGNALS and self.parameter(name, effect) is None:
+                known = [*self.states, *SIGNALS, *self.owners]
+                raise UsageError(f"effect {effect.name}: {unknown_name('argument', name, known)}")
+
+
+@lru_cache(maxsize=64)
+def compose(effects: tuple[type[Effect], ...]) -> Composition:
+    """Compose effects, in the given order, into one kernel.
+
+    Raises UsageError when names clash, an argument is unknown, a single signal has two sources, or effects wait for
+    each other.
+    """
+    resolver = Resolver(effects)
+    for effect in effects:
+        for key in ("equations", "advance"):
+            if key in effect.functions:
+                resolver.check(effect.functions[key], effect)
+    parameters = tuple(f"{effect.name}.{key}" for effect in effects for key in effect.parameters)
+    states = tuple(resolver.states)
+    observed = OBSERVED if {"p_a", "p_b"} <= set(states) else _OBSERVED_WITHOUT_CHAMBERS
+    return Composition(effects, states, parameters, observed, module_text(resolver, parameters, observed))

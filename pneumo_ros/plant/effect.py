@@ -1,0 +1,158 @@
+"""The interface of a physical effect: plain classes whose equations are plain Python.
+
+    class SealLeak(Effect):
+        \"\"\"Turbulent leakage across the piston seal. Source, equation.\"\"\"
+        conductance = Parameter(2e-11, "kg/(s*sqrt(Pa))", "seal leak coefficient", low=0.0)
+
+        def equations(p_a, p_b, conductance):
+            leak = conductance * (p_a - p_b) / sqrt(abs(p_a - p_b) + 1.0)
+            flow_a, flow_b = -leak, leak
+            return flow_a, flow_b
+
+What an effect reads are the arguments of `equations` (states, signals, its own parameters, those of others); what it
+writes are the returned names: signals of `signals.py`, `der_x` for each state x it declares, and `rate_x` [1/s] where
+der_x = source - rate_x x, which lets the integrator take that part exactly. An optional `advance` runs once after each
+step and returns states; an optional `caution` returns a sentence when parameters, though allowed, are unwise.
+"""
+
+import ast
+import inspect
+import math
+import re
+import textwrap
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.maths import atan, cos, exp, log, pi, power, sign, sin, sqrt, tanh
+
+__all__ = [
+    "Effect", "Function", "Parameter", "State",
+    "atan", "cos", "exp", "log", "pi", "power", "sign", "sin", "sqrt", "tanh",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values."""
+
+    default: float
+    unit: str
+    meaning: str
+    low: float = -math.inf
+    high: float = math.inf
+
+    def __post_init__(self) -> None:
+        if not (self.low <= self.default <= self.high):
+            raise UsageError(
+                f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"
+            )
+
+    def check(self, name: str, value: object) -> float:
+        """Return value as float; UsageError when it is no number, not finite, or out of range."""
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+            raise UsageError(f"{name} is {value!r}; it takes a number in {self.unit}, {self.range_text()}")
+        if not math.isfinite(value) or not self.low <= value <= self.high:
+            raise UsageError(f"{name} is {value!r} {self.unit}; allowed is {self.range_text()}")
+        return float(value)
+
+    def range_text(self) -> str:
+        """The allowed range in words."""
+        if math.isinf(self.low) and math.isinf(self.high):
+            return "any finite number"
+        if math.isinf(self.high):
+            return f"{self.low:g} or more"
+        if math.isinf(self.low):
+            return f"{self.high:g} or less"
+        return f"{self.low:g} to {self.high:g}"
+
+
+@dataclass(frozen=True)
+class State:
+    """A state an effect integrates: unit, meaning and value at rest. A state in m/s is a velocity (see `compose`)."""
+
+    unit: str
+    meaning: str
+    initial: float = 0.0
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of an effect as data: what it reads, what it writes, its syntax tree and where its names live."""
+
+    name: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    tree: ast.FunctionDef = field(repr=False)
+    globals: dict[str, Any] = field(repr=False)
+
+
+class Effect:
+    """Base of all effects; subclasses are never instantiated."""
+
+    name: ClassVar[str] = ""
+    parameters: ClassVar[dict[str, Parameter]] = {}
+    states: ClassVar[dict[str, State]] = {}
+    functions: ClassVar[dict[str, Function]] = {}
+    signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
+    source: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+        cls.parameters = {key: value for key, value in vars(cls).items() if isinstance(value, Parameter)}
+        cls.states = {key: value for key, value in vars(cls).items() if isinstance(value, State)}
+        present = {key: vars(cls)[key] for key in ("equations", "advance", "caution") if key in vars(cls)}
+        cls.functions = {key: parse_function(value, f"{cls.__name__}.{key}") for key, value in present.items()}
+        if not (cls.__doc__ or "").strip():
+            raise UsageError(
+                f"effect {cls.__name__} has no docstring; say what it is and where the equation comes from"
+            )
+        cls._check_states()
+
+    @classmethod
+    def _check_states(cls) -> None:
+        writes = cls.functions["equations"].writes if "equations" in cls.functions else ()
+        advanced = cls.functions["advance"].writes if "advance" in cls.functions else ()
+        for state in cls.states:
+            if f"der_{state}" not in writes and state not in advanced:
+                raise UsageError(f"effect {cls.__name__} declares state {state} but returns no der_{state}")
+        for name in writes:
+            if name.startswith(("der_", "rate_")) and name.partition("_")[2] not in cls.states:
+                raise UsageError(f"effect {cls.__name__} returns {name} but declares no state {name.partition('_')[2]}")
+
+
+def parse_function(function: Callable[..., Any], title: str) -> Function:
+    """Read the arguments and the returned names of an effect's function from its source.
+
+    Raises UsageError when the source is not at hand, when it takes anything but plain arguments, or when it does not
+    end with its only `return`, of plain names.
+    """
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    except (OSError, TypeError) as error:
+        raise UsageError(f"the source of {title} cannot be read; put the effect in a file") from error
+    if not isinstance(tree, ast.FunctionDef):
+        raise UsageError(f"{title} must be a function")
+    given = tree.args
+    if given.vararg or given.kwarg or given.kwonlyargs or given.defaults or given.posonlyargs:
+        raise UsageError(f"{title} takes plain arguments only: no defaults, no * and no **")
+    name = function.__name__
+    writes = () if name == "caution" else _returned_names(tree, title)
+    return Function(name, tuple(a.arg for a in given.args), writes, tree, function.__globals__)
+
+
+def _returned_names(tree: ast.FunctionDef, title: str) -> tuple[str, ...]:
+    last = tree.body[-1]
+    returns = [node for node in ast.walk(tree) if isinstance(node, ast.Return)]
+    if not isinstance(last, ast.Return) or last.value is None or returns != [last]:
+        raise UsageError(
+            f"{title} must end with its only return statement, of the names it writes: return flow_a, flow_b"
+        )
+    values = last.value.elts if isinstance(last.value, ast.Tuple) else [last.value]
+    names = [value.id for value in values if isinstance(value, ast.Name)]
+    if len(names) != len(values) or len(set(names)) != len(names):
+        raise UsageError(f"{title} must return plain, different names: assign first, then return flow_a, flow_b")
+    return tuple(names)

@@ -1,0 +1,21 @@
+"""The valve's flow characteristic."""
+
+from pneumo_ros.plant.effect import Effect, Parameter, atan
+
+
+class ArctanFlow(Effect):
+    """Mass flow of the 5/3 servo valve, Eqs. 6-9: q = atan(k_u u) beta (pressure difference over the open edge)."""
+
+    filling_coefficient = Parameter(0.69501e-8, "kg/(s Pa)", "flow coefficient beta_fill", low=0.0, high=1e-4)
+    exhaust_coefficient = Parameter(0.898105e-8, "kg/(s Pa)", "flow coefficient beta_exhaust", low=0.0, high=1e-4)
+    voltage_gain = Parameter(2.0, "1/V", "gain k_u inside the arctangent", low=0.01, high=100.0)
+
+    source = "paper Eqs. 6-9; Endler 2009"
+    signature = "steady speed saturates with voltage"
+
+    def equations(opening, p_a, p_b, p_s, p_atm, filling_coefficient, exhaust_coefficient, voltage_gain):
+        fills_a = opening >= 0.0
+        phi = atan(voltage_gain * opening)
+        valve_flow_a = phi * (filling_coefficient * (p_s - p_a) if fills_a else exhaust_coefficient * (p_a - p_atm))
+        valve_flow_b = -phi * (exhaust_coefficient * (p_b - p_atm) if fills_a else filling_coefficient * (p_s - p_b))
+        return valve_flow_a, valve_flow_b

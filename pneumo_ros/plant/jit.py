@@ -1,0 +1,68 @@
+"""How generated kernels are compiled: decorators and the three bit operations numba cannot express.
+
+With NUMBA_DISABLE_JIT=1 the same module runs in pure Python, breakpoints and all.
+"""
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.plant import maths
+
+PURE_PYTHON = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+
+
+def _as_it_is(function: Any) -> Any:
+    return function
+
+
+if PURE_PYTHON:
+    inline: Any = _as_it_is
+    entry: Any = _as_it_is
+    power_of_two, exponent, mantissa = maths.power_of_two, maths.exponent, maths.mantissa
+else:
+    try:
+        import numba
+        from llvmlite import ir
+        from numba.extending import intrinsic
+    except ImportError as error:
+        raise PneumoError(
+            "numba is missing: it compiles the plant. Type: pip install numba (or: sudo apt install python3-numba). "
+            "NUMBA_DISABLE_JIT=1 runs the plant in pure Python, some hundred times slower."
+        ) from error
+
+    # error_model: a division never branches to an exception, or no loop would vectorise. No fast-math: compiled and
+    # interpreted results are equal to the bit.
+    inline = numba.njit(forceinline=True, error_model="numpy")
+    entry = numba.njit(cache=True, nogil=True, error_model="numpy")
+
+    _I64, _F64 = ir.IntType(64), ir.DoubleType()
+    _EXPONENT_ONE, _MANTISSA_BITS = 0x3FF0000000000000, 0x000FFFFFFFFFFFFF
+
+    def _real_function(build: Callable[[Any, Any], Any]) -> Any:
+        signature = numba.float64(numba.float64)
+
+        @intrinsic
+        def function(context: Any, x: Any) -> Any:
+            return signature, lambda _context, builder, _signature, arguments: build(builder, arguments[0])
+
+        return function
+
+    def _build_power_of_two(builder: Any, k: Any) -> Any:
+        bits = builder.bitcast(builder.fadd(k, ir.Constant(_F64, maths._ROUND)), _I64)
+        return builder.bitcast(builder.shl(builder.add(bits, ir.Constant(_I64, 1023)), ir.Constant(_I64, 52)), _F64)
+
+    def _build_exponent(builder: Any, x: Any) -> Any:
+        biased = builder.lshr(builder.bitcast(x, _I64), ir.Constant(_I64, 52))
+        # integer to float by bits, 2**52 + biased, because AVX2 has no conversion from 64-bit integers
+        as_float = builder.bitcast(builder.or_(biased, ir.Constant(_I64, 0x4330000000000000)), _F64)
+        return builder.fsub(as_float, ir.Constant(_F64, 4503599627370496.0 + 1023.0))
+
+    def _build_mantissa(builder: Any, x: Any) -> Any:
+        bits = builder.and_(builder.bitcast(x, _I64), ir.Constant(_I64, _MANTISSA_BITS))
+        return builder.bitcast(builder.or_(bits, ir.Constant(_I64, _EXPONENT_ONE)), _F64)
+
+    power_of_two = _real_function(_build_power_of_two)
+    exponent = _real_function(_build_exponent)
+    mantissa = _real_function(_build_mantissa)

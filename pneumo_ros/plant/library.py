@@ -1,0 +1,111 @@
+"""Finding effects by name: the shipped catalogue, installed packages, and files named on the command line.
+
+Nothing is registered. An effect `seal_leak` of the catalogue is the class `SealLeak` of `effects/<room>/seal_leak.py`;
+other packages offer theirs under the entry point group `pneumo_ros.effects`.
+"""
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from importlib.metadata import entry_points
+from importlib.resources import files
+from pathlib import Path
+from types import ModuleType
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.effect import Effect
+
+FRAME = ("piston", "air", "chambers")  # what every machine has; not part of the effects list
+_ROOMS = ("valve", "line", "chamber", "piston", "friction", "sensor")
+
+
+@lru_cache(maxsize=1)
+def _catalogue_modules() -> Mapping[str, str]:
+    """Effect name -> module name, from the files that are there."""
+    root = files("pneumo_ros.plant.effects")
+    found = {}
+    for room in _ROOMS:
+        folder = root.joinpath(room)
+        for file in sorted(folder.iterdir(), key=lambda f: f.name) if folder.is_dir() else ():
+            if file.name.endswith(".py") and not file.name.startswith("_"):
+                found[file.name[:-3]] = f"pneumo_ros.plant.effects.{room}.{file.name[:-3]}"
+    return found
+
+
+def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
+    """The effects a module defines itself, by name."""
+    own = (value for value in vars(module).values() if isinstance(value, type) and issubclass(value, Effect))
+    return {effect.name: effect for effect in own if effect.__module__ == module.__name__}
+
+
+@lru_cache(maxsize=32)
+def effects_of_file(path: str) -> Mapping[str, type[Effect]]:
+    """The effects of a user's Python file (it is executed: name only files you trust).
+
+    Raises UsageError when the file is missing, does not run, or holds no effect.
+    """
+    location = Path(path)
+    if not location.is_file():
+        raise UsageError(f"effects file {path} does not exist")
+    name = f"pneumo_effects_{location.stem}"
+    specification = importlib.util.spec_from_file_location(name, location)
+    if specification is None or specification.loader is None:
+        raise UsageError(f"effects file {path} is no Python file; it must end in .py")
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    try:
+        specification.loader.exec_module(module)
+    except UsageError as error:
+        raise UsageError(f"effects file {path}: {error}") from error
+    except Exception as error:  # whatever a user's file raises is told, not thrown
+        raise UsageError(f"effects file {path} does not run: {type(error).__name__}: {error}") from error
+    found = effects_in(module)
+    if not found:
+        raise UsageError(f"effects file {path} defines no subclass of pneumo_ros.plant.effect.Effect")
+    return found
+
+
+@lru_cache(maxsize=1)
+def _installed() -> dict[str, type[Effect]]:
+    found = {}
+    for point in entry_points(group="pneumo_ros.effects"):
+        effect = point.load()
+        if not (isinstance(effect, type) and issubclass(effect, Effect)):
+            raise UsageError(f"entry point {point.name} of group pneumo_ros.effects is no Effect")
+        found[effect.name] = effect
+    return found
+
+
+class Library:
+    """The effects at hand: catalogue, installed packages and the given files; files come first."""
+
+    def __init__(self, effect_files: Iterable[str | Path] = ()) -> None:
+        """Load `effect_files`; raises UsageError as `effects_of_file` does, or when a file redefines an effect."""
+        self._own: dict[str, type[Effect]] = {}
+        for path in effect_files:
+            for name, effect in effects_of_file(str(path)).items():
+                if name in _catalogue_modules() or name in FRAME or name in self._own:
+                    raise UsageError(f"effects file {path} defines {name}, which is already taken; rename the class")
+                self._own[name] = effect
+
+    def names(self) -> tuple[str, ...]:
+        """All effect names, sorted."""
+        return tuple(sorted({*_catalogue_modules(), *_installed(), *self._own}))
+
+    def find(self, name: str) -> type[Effect]:
+        """The effect of that name; UsageError with the nearest names."""
+        if name in self._own:
+            return self._own[name]
+        if name in _catalogue_modules():
+            return effects_in(importlib.import_module(_catalogue_modules()[name]))[name]
+        if name in _installed():
+            return _installed()[name]
+        raise UsageError(f"{unknown_name('effect', name, self.names())} (effects of your own: --effects FILE.py)")
+
+    @staticmethod
+    def frame(name: str) -> type[Effect]:
+        """Piston, air or chambers."""
+        return effects_in(importlib.import_module(f"pneumo_ros.plant.effects.frame.{name}"))[name]

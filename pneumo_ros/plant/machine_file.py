@@ -1,0 +1,139 @@
+"""Machine files: one YAML file is the model of the commands and the ROS parameter file of the nodes."""
+
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.files import write_whole
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.model import Model
+
+
+def shipped_machines() -> tuple[str, ...]:
+    """Names of the machine files that come with the package."""
+    return tuple(sorted(f.name[:-5] for f in files("pneumo_ros.config").iterdir() if f.name.endswith(".yaml")))
+
+
+def read_machine(name_or_path: str | Path) -> tuple[str, str]:
+    """Name and text of a machine file: a path, or the name of a shipped one (`axis`, `paper`).
+
+    Raises DataError when there is none, or it cannot be read.
+    """
+    path = Path(name_or_path)
+    shipped = files("pneumo_ros.config").joinpath(f"{name_or_path}.yaml")
+    try:
+        if not path.is_file() and path.name == str(name_or_path) and shipped.is_file():
+            return path.name, shipped.read_text(encoding="utf-8")
+        return path.stem, path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
+        raise DataError(
+            f"machine file {name_or_path} cannot be read ({reason}); "
+            f"give a YAML file or one of: {', '.join(shipped_machines())}"
+        ) from error
+
+
+def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | Path] = ()) -> Model:
+    """Load a machine file, completely or not at all.
+
+    Raises DataError when the file cannot be read, and UsageError, with the nearest names, for an unknown or missing
+    section, effect or parameter, or a value that is no finite number within its range.
+    """
+    name, text = read_machine(name_or_path)
+    try:
+        return parse_machine(text, name, Library(effects_files))
+    except UsageError as error:
+        raise UsageError(f"machine file {name_or_path}: {error}") from error
+
+
+def parse_machine(text: str, name: str, library: Library) -> Model:
+    """The model a machine file's text describes; UsageError as for `load_model`."""
+    try:
+        document = yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        place = getattr(error, "problem_mark", None)
+        where = f" at line {place.line + 1}" if place else ""
+        raise UsageError(f"this is no YAML{where}: {getattr(error, 'problem', None) or error}") from error
+    return model_from_dict(_parameters(document), name, library)
+
+
+def _parameters(document: object) -> dict[str, Any]:
+    layout = "the first lines must read '/**:', '  ros__parameters:', '    effects: [...]'"
+    if not isinstance(document, dict) or not isinstance(document.get("/**"), dict):
+        raise UsageError(f"no section '/**'; {layout}")
+    parameters = document["/**"].get("ros__parameters")
+    if not isinstance(parameters, dict):
+        raise UsageError(f"no section 'ros__parameters' in '/**'; {layout}")
+    return parameters
+
+
+def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Model:
+    """A model from the nested dictionary of a machine file (also what `description` carries); UsageError as above."""
+    listed = given.get("effects")
+    if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
+        raise UsageError(f"'effects' is {listed!r}; it takes a list of names, for example [dead_zone, arctan_flow]")
+    sections = {key: value for key, value in given.items() if key != "effects"}
+    frame = (
+        FRAME
+        if "chambers" in sections
+        else tuple(f for f in FRAME if f != "chambers" and (f in sections or f == "piston"))
+    )
+    known = [*frame, *listed]
+    for section, values in sections.items():
+        if section not in known:
+            hint = "; add it to 'effects' if you want it" if section in library.names() else ""
+            raise UsageError(f"{unknown_name('section', str(section), {*known, *FRAME})}{hint}")
+        if not isinstance(values, dict):
+            raise UsageError(f"section {section} is {values!r}; it takes its parameters, name: value")
+    values = {f"{section}.{key}": _number(v) for section, inner in sections.items() for key, v in inner.items()}
+    return Model.build(listed, values, name=name, library=library, frame=frame)
+
+
+def _number(value: object) -> object:
+    """YAML 1.1 reads 7e5 as text, ROS as a number: take it for the number it is meant to be."""
+    if isinstance(value, str):
+        try:
+            return float(value)
+        except ValueError:
+            return value
+    return value
+
+
+def machine_text(model: Model) -> str:
+    """The machine file of a model, with unit and meaning beside every value."""
+    lines = ["/**:", "  ros__parameters:", f"    effects: [{', '.join(model.effects)}]"]
+    section = ""
+    for dotted, value in model.parameters.items():
+        owner, _, key = dotted.partition(".")
+        if owner != section:
+            lines.append(f"    {owner}:")
+            section = owner
+        specification = model.specification(dotted)
+        unit = "" if specification.unit == "1" else f"[{specification.unit}] "
+        lines.append(f"      {key}: {_yaml_number(value)}  # {unit}{specification.meaning}")
+    return "\n".join(lines) + "\n"
+
+
+def _yaml_number(value: float) -> str:
+    """Shortest text that both YAML 1.1 and ROS read back as the same double."""
+    mantissa, e, exponent = repr(float(value)).partition("e")
+    if "." not in mantissa:
+        mantissa += ".0"
+    return mantissa + (f"e{int(exponent):+03d}" if e else "")
+
+
+def save_model(model: Model, path: str | Path, *, overwrite: bool = True) -> Path:
+    """Write the machine file of `model`, whole or not at all; returns the path.
+
+    Raises DataError when the file exists and `overwrite` is false, UsageError when it cannot be written.
+    """
+    target = Path(path)
+    if target.exists() and not overwrite:
+        raise DataError(f"{target} exists and is kept; name another file")
+    write_whole(target, machine_text(model))
+    return target

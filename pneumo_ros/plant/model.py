@@ -1,0 +1,273 @@
+"""A machine: effects and the values of their parameters, ready to be simulated. Models are immutable."""
+
+import math
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from types import MappingProxyType, ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pneumo_ros.errors import NumericalError, UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.compose import Composition, compose
+from pneumo_ros.plant.effect import Effect, Parameter
+from pneumo_ros.plant.kernels import load_kernel
+from pneumo_ros.plant.lanes import run_lanes
+from pneumo_ros.plant.library import FRAME, Library
+
+Array = NDArray[np.float64]
+STEP = 1e-4  # s, the default step
+
+
+class Model:
+    """Effects in order, a value for every parameter, and the kernel compiled for them.
+
+    Build one with `load_model`, or from another by `with_parameters` and `with_effects`.
+    """
+
+    def __init__(self, composition: Composition, values: Mapping[str, float], name: str, library: Library) -> None:
+        """Use `Model.build`, which validates."""
+        self.composition, self.name, self.library = composition, name, library
+        self.parameters: Mapping[str, float] = MappingProxyType({key: values[key] for key in composition.parameters})
+
+    @classmethod
+    def build(
+        cls,
+        effects: Iterable[str],
+        values: Mapping[str, object],
+        *,
+        name: str = "model",
+        library: Library | None = None,
+        frame: Iterable[str] = FRAME,
+        defaults: bool = False,
+    ) -> "Model":
+        """A model of `effects` with `values` by dotted name; missing values are an error unless `defaults`.
+
+        Raises UsageError, with the nearest names, for unknown or repeated effects and unknown, missing or bad values.
+        """
+        library = library or Library()
+        names = tuple(effects)
+        repeated = sorted({n for n in names if names.count(n) > 1})
+        if repeated:
+            raise UsageError(f"effect {repeated[0]} is listed twice")
+        composition = compose((*(library.frame(f) for f in frame), *(library.find(n) for n in names)))
+        return cls(composition, _checked(composition, values, defaults), name, library)
+
+    # --- what it is -------------------------------------------------------------------------------------------------
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of the effects, in order, without the frame (piston, air, chambers)."""
+        return tuple(e.name for e in self.composition.effects if e.name not in FRAME)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states, in the order of state vectors: y, v, p_a, p_b, then those of the effects."""
+        return self.composition.states
+
+    @property
+    def force_driven(self) -> bool:
+        """Whether the input is a measured force [N] instead of a valve voltage: a machine file without chambers."""
+        return "p_a" not in self.states
+
+    def __getitem__(self, dotted: str) -> float:
+        if dotted not in self.parameters:
+            raise UsageError(unknown_name("parameter", dotted, self.parameters))
+        return self.parameters[dotted]
+
+    def specification(self, dotted: str) -> Parameter:
+        """Unit, default, range and meaning of a parameter; UsageError with the nearest names."""
+        return self.composition.parameter(dotted)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on values that are allowed but unwise, such as friction that is not passive."""
+        found = (_caution(self, effect) for effect in self.composition.effects if "caution" in effect.functions)
+        return tuple(sentence for sentence in found if sentence)
+
+    def as_dict(self) -> dict[str, object]:
+        """The machine file as a nested dictionary: effects, then section -> parameter -> value."""
+        result: dict[str, object] = {"effects": list(self.effects)}
+        for dotted, value in self.parameters.items():
+            section, _, key = dotted.partition(".")
+            inner = result.setdefault(section, {})
+            assert isinstance(inner, dict)
+            inner[key] = value
+        return result
+
+    # --- variants ---------------------------------------------------------------------------------------------------
+
+    def with_parameters(self, values: Mapping[str, object], name: str | None = None) -> "Model":
+        """The same effects with other values; UsageError, with the nearest names, leaves everything as it was."""
+        checked = _checked(self.composition, {**self.parameters, **values}, defaults=False)
+        return Model(self.composition, checked, name or self.name, self.library)
+
+    def with_effects(self, effects: Iterable[str], values: Mapping[str, object] | None = None) -> "Model":
+        """Another list of effects; shared parameters keep their values, new ones take `values` or their defaults."""
+        frame = tuple(e.name for e in self.composition.effects if e.name in FRAME)
+        model = Model.build(effects, {}, name=self.name, library=self.library, frame=frame, defaults=True)
+        kept = {key: value for key, value in self.parameters.items() if key in model.parameters}
+        return model.with_parameters({**kept, **(values or {})})
+
+    # --- simulation -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def kernel(self) -> ModuleType:
+        """The compiled module: `run`, `run_lanes`, `rates`, `observe` (see `emit`)."""
+        return load_kernel(self.composition.text)
+
+    @property
+    def values(self) -> Array:
+        """Parameter vector (parameters,) in kernel order; a fresh copy."""
+        return np.array(list(self.parameters.values()))
+
+    def state(self, **given: float) -> Array:
+        """State vector (states,) with the given entries; others at rest, pressures at the atmosphere's.
+
+        Raises UsageError for unknown or non-finite entries and for positions that leave no volume in a chamber.
+        """
+        rest = {s: effect.states[s].initial for effect in self.composition.effects for s in effect.states}
+        if not self.force_driven:
+            rest["p_a"] = rest["p_b"] = self["air.atmospheric_pressure"]
+        for key, value in given.items():
+            if key not in rest:
+                raise UsageError(unknown_name("state", key, rest))
+            if not math.isfinite(value):
+                raise UsageError(f"initial {key} is {value}; it takes a finite number")
+            rest[key] = float(value)
+        reach = 0.5 * self["piston.stroke"]
+        if abs(rest["y"]) > 1.05 * reach:
+            raise UsageError(f"initial y is {rest['y']:g} m, outside the stroke of {-reach:g} to {reach:g} m")
+        return np.array([rest[s] for s in self.states])
+
+    def simulate(
+        self, voltage: ArrayLike, state: ArrayLike, *, sample_time: float = 1e-3, step: float = STEP, start: float = 0.0
+    ) -> Array:
+        """Integrate from `state` (states,) while voltage[k] [V] is held over sample k; returns (samples, states).
+
+        Row k is the state at the END of sample k. `sample_time` [s] is divided into equal steps no longer than `step`
+        [s]; `start` [s] is the time of the first sample. Raises NumericalError when the state leaves the finite
+        numbers, naming the time, UsageError for a step that is not positive.
+        """
+        held = np.array(voltage, dtype=float, ndmin=1)
+        x = self._state_vector(state)
+        out = np.empty((len(held), len(x)))
+        stride, h = substeps(sample_time, step)
+        self.kernel.run(x, self.values, held, start, h, stride, out)
+        if not np.isfinite(x).all():
+            bad = int(np.argmin(np.isfinite(out).all(axis=1)))
+            raise NumericalError(
+                f"the state of {self.name} left the finite numbers at t = {start + bad * sample_time:.3f} s; "
+                f"take a shorter step than {h:g} s or less stiff parameters"
+            )
+        return out
+
+    def simulate_lanes(
+        self,
+        voltage: ArrayLike,
+        states: ArrayLike,
+        parameters: ArrayLike | None = None,
+        *,
+        samples: int | None = None,
+        first: ArrayLike | None = None,
+        sample_time: float = 1e-3,
+        step: float = STEP,
+        start: float = 0.0,
+        threads: int = 1,
+    ) -> Array:
+        """Integrate many lanes at once, several times faster each than `simulate`; returns (lanes, samples, states).
+
+        voltage (n,) [V] is shared; lane i holds voltage[first[i] + k] over its sample k (first defaults to 0).
+        states (lanes, states), parameters (lanes, parameters) or None for the model's own, samples defaults to what
+        the voltage holds. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that
+        do not fit.
+        """
+        x = np.array(states, dtype=float, ndmin=2)
+        own = np.tile(self.values, (len(x), 1))
+        q = own if parameters is None else np.array(parameters, dtype=float)
+        stride, h = substeps(sample_time, step)
+        held = np.array(voltage, dtype=float, ndmin=1)
+        begin = np.zeros(len(x), dtype=np.int64) if first is None else np.asarray(first, dtype=np.int64)
+        count = len(held) - int(begin.max(initial=0)) if samples is None else samples
+        if x.shape[1] != len(self.states) or q.shape != (len(x), len(self.parameters)) or begin.shape != (len(x),):
+            raise UsageError(
+                f"lanes do not fit: states {x.shape}, parameters {q.shape}, first {begin.shape}; "
+                f"needed are (lanes, {len(self.states)}), (lanes, {len(self.parameters)}), (lanes,)"
+            )
+        if begin.min(initial=0) < 0 or begin.max(initial=0) + count > len(held):
+            raise UsageError(f"lanes reach beyond the {len(held)} samples of voltage")
+        return run_lanes(
+            self.kernel, x, q, held, begin, start + sample_time * begin.astype(float), h, stride, count, threads
+        )
+
+    def outputs(
+        self, states: ArrayLike, voltage: ArrayLike | None = None, start: float = 0.0, sample_time: float = 1e-3
+    ) -> dict[str, Array]:
+        """What can be seen along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
+
+        `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract; the others as in `signals`.
+        """
+        X = np.array(states, dtype=float, ndmin=2)
+        U = np.zeros(len(X)) if voltage is None else np.array(voltage, dtype=float, ndmin=1)
+        observed = np.empty((len(X), len(self.composition.observed)))
+        self.kernel.observe(X, self.values, U, start + sample_time * np.arange(1, len(X) + 1), observed)
+        result = {name: X[:, i] for i, name in enumerate(self.states)}
+        result |= {name: observed[:, i] for i, name in enumerate(self.composition.observed)}
+        result["effort"] = result["drive"] if self.force_driven else self.effort(X)
+        return result
+
+    def effort(self, states: Array) -> Array:
+        """Net pressure force A_a p_a - A_b p_b - p_atm (A_a - A_b) [N] for states (..., states)."""
+        area_a, area_b = self["piston.area_a"], self["piston.area_b"]
+        a, b = self.states.index("p_a"), self.states.index("p_b")
+        atmosphere = self["air.atmospheric_pressure"] * (area_a - area_b)
+        return np.asarray(area_a * states[..., a] - area_b * states[..., b] - atmosphere)
+
+    def derivatives(self, states: ArrayLike, voltage: ArrayLike, time: ArrayLike = 0.0) -> Array:
+        """Right-hand sides (samples, states) of the model's equations at the given states (samples, states)."""
+        X = np.array(states, dtype=float, ndmin=2)
+        out = np.empty_like(X)
+        U, t = (np.array(np.broadcast_to(a, len(X)), dtype=float) for a in (voltage, time))
+        self.kernel.rates(X, self.values, U, t, out)
+        return out
+
+    def _state_vector(self, state: ArrayLike) -> Array:
+        x = np.array(state, dtype=float)
+        if x.shape != (len(self.states),) or not np.isfinite(x).all():
+            raise UsageError(f"state {state!r} must hold {len(self.states)} finite numbers: {', '.join(self.states)}")
+        return x
+
+
+def substeps(sample_time: float, step: float) -> tuple[int, float]:
+    """Number of equal steps in a sample and their length [s], at most `step`; UsageError unless both are positive."""
+    if not (math.isfinite(sample_time) and math.isfinite(step) and sample_time > 0 and step > 0):
+        raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
+    stride = max(1, math.ceil(sample_time / step - 1e-9))
+    return stride, sample_time / stride
+
+
+def _checked(composition: Composition, values: Mapping[str, object], defaults: bool) -> dict[str, float]:
+    for dotted in values:
+        composition.parameter(dotted)
+    checked = {}
+    for dotted in composition.parameters:
+        specification = composition.parameter(dotted)
+        if dotted not in values and not defaults:
+            section, _, key = dotted.partition(".")
+            raise UsageError(
+                f"parameter {dotted} is missing; add '{key}: {specification.default!r}' to section '{section}' "
+                f"({specification.meaning} [{specification.unit}], {specification.range_text()})"
+            )
+        checked[dotted] = specification.check(dotted, values.get(dotted, specification.default))
+    return checked
+
+
+def _caution(model: Model, effect: type[Effect]) -> str | None:
+    values = []
+    for name in effect.functions["caution"].reads:
+        owner, _, key = name.partition("__") if "__" in name else (effect.name, "", name)
+        if f"{owner}.{key}" not in model.parameters:
+            return None
+        values.append(model.parameters[f"{owner}.{key}"])
+    sentence = vars(effect)["caution"](*values)
+    return f"{effect.name}: {sentence}" if sentence else None

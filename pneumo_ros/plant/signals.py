@@ -1,0 +1,65 @@
+"""The one table of signals through which effects act on each other.
+
+Frames and signs: positive `y` extends the rod and grows chamber a. Forces are positive when they oppose positive
+velocity. Mass flows are positive INTO the chamber they are named after. Pressures are absolute.
+
+Kinds: an *input* is given from outside; contributions to a *sum* add, to a *product* multiply; a *single* has at most
+one source, its default otherwise, and any number of effects that read and rewrite it, in the order of the effects list.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal["input", "sum", "product", "single"]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One row: name as it stands in equations, kind, unit, default (a number or an expression) and meaning."""
+
+    name: str
+    kind: Kind
+    unit: str
+    default: str
+    meaning: str
+
+
+_TABLE = (
+    # inputs
+    Signal("U", "input", "V", "0.0", "valve voltage, held over a sample"),
+    Signal("t", "input", "s", "0.0", "time since the start"),
+    # valve
+    Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
+    Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),
+    Signal("spool", "single", "V", "voltage", "spool position, in volts of command"),
+    Signal("opening", "single", "V", "spool", "spool position beyond the dead zone"),
+    Signal("supply_drop", "sum", "Pa", "0.0", "pressure lost between supply and valve"),
+    Signal("p_s", "single", "Pa", "supply_pressure - supply_drop", "supply pressure at the valve, absolute"),
+    Signal("p_atm", "single", "Pa", "atmospheric_pressure", "pressure of the atmosphere, absolute"),
+    Signal("valve_flow_a", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber a"),
+    Signal("valve_flow_b", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber b"),
+    # lines and chambers
+    Signal("port_flow_a", "single", "kg/s", "valve_flow_a", "mass flow through port a into chamber a"),
+    Signal("port_flow_b", "single", "kg/s", "valve_flow_b", "mass flow through port b into chamber b"),
+    Signal("flow_a", "sum", "kg/s", "0.0", "further mass flow into chamber a (leaks)"),
+    Signal("flow_b", "sum", "kg/s", "0.0", "further mass flow into chamber b (leaks)"),
+    Signal("added_volume_a", "sum", "m3", "0.0", "added to the volume of chamber a"),
+    Signal("added_volume_b", "sum", "m3", "0.0", "added to the volume of chamber b"),
+    Signal("heat_a", "sum", "W", "0.0", "heat flow into the gas of chamber a"),
+    Signal("heat_b", "sum", "W", "0.0", "heat flow into the gas of chamber b"),
+    # piston and friction
+    Signal("drive", "single", "N", "U", "force that drives the piston: of the chambers, or the input itself"),
+    Signal("force", "sum", "N", "0.0", "load force on the piston, against positive velocity"),
+    Signal("friction", "sum", "N", "0.0", "friction force on the piston, against positive velocity"),
+    Signal("added_mass", "sum", "kg", "0.0", "moves with the piston"),
+    Signal("friction_scale", "product", "1", "1.0", "multiplies Coulomb and static friction"),
+    Signal("friction_rise", "sum", "N", "0.0", "added to Coulomb and static friction"),
+    Signal("static_rise", "sum", "N", "0.0", "added to static friction alone"),
+    Signal("stribeck", "single", "1", "exp(-(v / stribeck_velocity) * (v / stribeck_velocity))", "Stribeck decay"),
+    # sensors
+    Signal("y_measured", "single", "m", "y", "what the position sensor reads"),
+    Signal("p_a_measured", "single", "Pa", "p_a", "what the pressure sensor of chamber a reads"),
+    Signal("p_b_measured", "single", "Pa", "p_b", "what the pressure sensor of chamber b reads"),
+)
+
+SIGNALS: dict[str, Signal] = {signal.name: signal for signal in _TABLE}

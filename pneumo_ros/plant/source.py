@@ -1,0 +1,100 @@
+"""Turn the functions of effects, and all they call, into text that stands alone in one generated module.
+
+Numba's cache does not see edits in another file; therefore everything a kernel runs is copied into its text, whose hash
+names the kernel.
+"""
+
+import ast
+import builtins
+import inspect
+import math
+import textwrap
+import types
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant import maths
+from pneumo_ros.plant.effect import Function
+
+_BUILTINS = ("abs", "min", "max", "float", "int", "bool", "range", "len", "round", "True", "False", "None")
+_REPLACED = ("power_of_two", "exponent", "mantissa")  # bit operations, imported from `jit`
+_MODULES = {math: "math", np: "np"}
+
+
+class SourceBook:
+    """Collects functions in the order in which they must be defined, each under a name of its own."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+        self._names: dict[str, str] = {}  # definition text -> name
+        self._taken: set[str] = set(_REPLACED)
+
+    def add(self, function: Function, name: str, title: str) -> str:
+        """Add an effect's function under `name`; `title` is what error messages call it."""
+        return self._define(function.tree, function.globals, name, title)
+
+    def _define(self, tree: ast.FunctionDef, scope: dict[str, Any], name: str, title: str) -> str:
+        body = _Rewriter(self, tree, scope, title).rewrite()
+        key = ast.unparse(body)
+        if key not in self._names:
+            while name in self._taken:
+                name += "_"
+            self._taken.add(name)
+            self._names[key] = name
+            body.name = name
+            self.texts.append("@inline\n" + ast.unparse(ast.fix_missing_locations(body)))
+        return self._names[key]
+
+    def helper(self, function: Callable[..., Any], title: str) -> str:
+        """Add a plain Python function that an effect calls."""
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+        if not isinstance(tree, ast.FunctionDef):
+            raise UsageError(f"{title} calls {function.__name__}, which is no plain function")
+        return self._define(tree, function.__globals__, function.__name__, f"{title}, {function.__name__}")
+
+
+class _Rewriter(ast.NodeTransformer):
+    """Replaces free names of one function: constants by their value, functions by their name in the module."""
+
+    def __init__(self, book: SourceBook, tree: ast.FunctionDef, scope: dict[str, Any], title: str) -> None:
+        self.book, self.scope, self.title = book, scope, title
+        self.tree = ast.parse(ast.unparse(tree)).body[0]
+        stored = {n.id for n in ast.walk(self.tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        self.local = stored | {a.arg for a in tree.args.args}
+
+    def rewrite(self) -> ast.FunctionDef:
+        tree = self.tree
+        assert isinstance(tree, ast.FunctionDef)
+        tree.decorator_list, tree.returns = [], None
+        for argument in tree.args.args:
+            argument.annotation = None
+        if ast.get_docstring(tree) is not None:
+            tree.body = tree.body[1:]
+        tree.body = [self.visit(node) for node in tree.body]
+        return tree
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST:
+        assert node.value is not None
+        assignment: ast.AST = self.visit(ast.Assign(targets=[node.target], value=node.value))
+        return assignment
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:
+        name = node.id
+        if name in self.local or name in _BUILTINS:
+            return node
+        value = self.scope.get(name, getattr(maths, name, None))
+        if isinstance(value, bool | int | float):
+            return ast.Constant(value)
+        if isinstance(value, types.ModuleType) and value in _MODULES:
+            return ast.Name(_MODULES[value], node.ctx)
+        if isinstance(value, types.FunctionType):
+            if value.__module__ == maths.__name__ and name in _REPLACED:
+                return node
+            return ast.Name(self.book.helper(value, self.title), node.ctx)
+        known = [*self.local, *(n for n in vars(maths) if not n.startswith("_"))]
+        hint = " This builtin does not compile." if hasattr(builtins, name) else ""
+        raise UsageError(f"{self.title}: {unknown_name('name', name, known)}{hint}")
