@@ -25,7 +25,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError instead of leaving the program."""
-        raise UsageError(f"{message}; type: {self.prog} --help")
+        raise UsageError(f"{message} (see: {self.prog} --help)")
 
     def parse_strictly(self, arguments: Sequence[str]) -> argparse.Namespace:
         """Parse, and refuse what is not understood."""

@@ -57,7 +57,7 @@ def _verb(name: str) -> ModuleType:
     if name not in VERBS:
         kind = "option" if name.startswith("-") else "verb"
         allowed = ("--help", "--version") if kind == "option" else VERBS
-        raise UsageError(f"{unknown_name(kind, name, allowed)}; type: pneumo --help")
+        raise UsageError(f"{unknown_name(kind, name, allowed)} (see: pneumo --help)")
     return import_module(f"pneumo_ros.command.{name}")
 
 

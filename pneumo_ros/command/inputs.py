@@ -1,0 +1,119 @@
+"""What drives a simulation: `constant:V`, `step:V@T`, `sine:V,HZ`, a CSV file, or a recording to replay."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.nearest import unknown_name
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+FORMS = "constant:V, step:V@T, sine:V,HZ, file.csv, or the folder or .mcap of a recording"
+
+
+@dataclass(frozen=True)
+class Drive:
+    """The valve voltage as a function of time.
+
+    voltage: times (n,) in s from the start -> voltages (n,) in V, each held until the next.
+    duration: how long it lasts [s], None when it has no end of its own.
+    text: what it is, for a person.
+    """
+
+    voltage: "Callable[[Array], Array]"
+    duration: float | None
+    text: str
+
+
+def parse_drive(text: str) -> Drive:
+    """The drive that a SPEC names, other than a recording; UsageError says which forms there are."""
+    kind, colon, rest = text.partition(":")
+    if colon and kind in _FORMULAS:
+        return _FORMULAS[kind](rest)
+    if Path(text).suffix.lower() == ".csv":
+        return read_csv(Path(text))
+    if colon and "/" not in text:
+        raise UsageError(f"{unknown_name('input', kind, _FORMULAS)} --input takes {FORMS}")
+    raise UsageError(f"--input {text}: no such file or form; it takes {FORMS}")
+
+
+def _constant(text: str) -> Drive:
+    (volts,) = _numbers(text, "", "constant:V", "constant:1.1")
+    return Drive(lambda time: 0.0 * time + volts, None, f"{volts:g} V")
+
+
+def _step(text: str) -> Drive:
+    volts, start = _numbers(text, "@", "step:V@T", "step:2.5@1")
+    return Drive(lambda time: volts * (time >= start), None, f"0 V, from {start:g} s on {volts:g} V")
+
+
+def _sine(text: str) -> Drive:
+    volts, hertz = _numbers(text, ",", "sine:V,HZ", "sine:3,0.5")
+    if hertz <= 0.0:
+        raise UsageError(f"sine:{text}: the frequency must be above 0 Hz; an example is sine:3,0.5")
+
+    def voltage(time: "Array") -> "Array":
+        import numpy as np
+
+        return volts * np.sin(2.0 * math.pi * hertz * time)
+
+    return Drive(voltage, None, f"{volts:g} V sine of {hertz:g} Hz")
+
+
+_FORMULAS: dict[str, Callable[[str], Drive]] = {"constant": _constant, "step": _step, "sine": _sine}
+
+
+def _numbers(text: str, separator: str, form: str, example: str) -> list[float]:
+    parts = text.split(separator) if separator else [text]
+    try:
+        numbers = [float(part) for part in parts]
+    except ValueError:
+        numbers = []
+    if len(numbers) != (2 if separator else 1) or not all(map(math.isfinite, numbers)):
+        raise UsageError(f"'{text}' does not fit {form}, with finite numbers in V, s and Hz; an example is {example}")
+    return numbers
+
+
+def read_csv(path: Path) -> Drive:
+    """Two columns, time [s] and voltage [V]; a first line of names is allowed. Voltages are held until the next row.
+
+    Raises DataError, naming the line, for anything else and for times that do not increase.
+    """
+    import numpy as np
+
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"cannot read {path}: {error}") from error
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(lines, start=1):
+        row = _row(line)
+        if row is not None and (not rows or row[0] > rows[-1][0]):
+            rows.append(row)
+        elif line.strip() and not line.startswith("#") and not (number == 1 and row is None):
+            expected = "a time above the last one and a voltage" if rows else "a time [s] and a voltage [V]"
+            raise DataError(f"{path}, line {number}: expected {expected}, separated by a comma, and found '{line}'")
+    if len(rows) < 2:
+        raise DataError(f"{path} holds {len(rows)} rows; needed are at least two of time [s], voltage [V]")
+    time, volts = np.array(rows).T
+
+    def voltage(at: "Array") -> "Array":
+        held: Array = volts[np.clip(np.searchsorted(time - time[0], at, side="right") - 1, 0, None)]
+        return held
+
+    return Drive(voltage, float(time[-1] - time[0]), f"{path.name}, {len(rows)} rows")
+
+
+def _row(line: str) -> tuple[float, float] | None:
+    try:
+        time, volts = (float(cell) for cell in line.replace(";", ",").split(",")[:2])
+    except ValueError:
+        return None
+    return (time, volts) if math.isfinite(time) and math.isfinite(volts) else None
