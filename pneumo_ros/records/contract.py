@@ -1,0 +1,43 @@
+"""Topics every recording, node and tool agrees on: names relative to the namespace of the axis, and their types."""
+
+JOINT_STATES = "joint_states"
+PRESSURE_A = "chamber_a/pressure"
+PRESSURE_B = "chamber_b/pressure"
+SUPPLY_PRESSURE = "supply/pressure"
+COMMAND = "valve/command"
+DESCRIPTION = "description"
+
+TYPES = {
+    JOINT_STATES: "sensor_msgs/msg/JointState",
+    PRESSURE_A: "sensor_msgs/msg/FluidPressure",
+    PRESSURE_B: "sensor_msgs/msg/FluidPressure",
+    SUPPLY_PRESSURE: "sensor_msgs/msg/FluidPressure",
+    COMMAND: "std_msgs/msg/Float64",
+    "position/reference": "std_msgs/msg/Float64",
+    "joint_trajectory": "trajectory_msgs/msg/JointTrajectory",
+    "joint_commands": "sensor_msgs/msg/JointState",
+    DESCRIPTION: "std_msgs/msg/String",
+}
+GLOBAL_TYPES = {
+    "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+    "/clock": "rosgraph_msgs/msg/Clock",
+}
+LATCHED = frozenset({DESCRIPTION})  # published transient local
+JOINT = "piston"  # unless said otherwise
+
+# What a recording of the axis is made of; the rest is for whoever drives it.
+SIGNALS = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE, COMMAND, DESCRIPTION)
+
+
+def split(topic: str) -> tuple[str, str] | None:
+    """Namespace and contract name of a recorded topic; None for one the contract does not know.
+
+    The namespace has no slashes at its ends, and is "" for the root.
+    """
+    plain = topic.strip("/")
+    for name in TYPES:
+        if plain == name:
+            return "", name
+        if plain.endswith("/" + name):
+            return plain[: -len(name) - 1], name
+    return None

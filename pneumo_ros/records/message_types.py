@@ -1,0 +1,97 @@
+"""Message definitions: those a recording carries, and the standard ones for what is written.
+
+The definitions, their text form and the RIHS01 hash come from rosbags.
+"""
+
+from functools import lru_cache
+from typing import Any
+
+from rosbags.interfaces import Nodetype
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.records.block import Channel
+
+_IDL_PART = "=" * 80 + "\nIDL: "
+
+
+@lru_cache(maxsize=1)
+def standard_types() -> Typestore:
+    """Every message type of the newest ROS 2 distribution that rosbags knows."""
+    return get_typestore(Stores.LATEST)
+
+
+@lru_cache(maxsize=256)
+def types_of(message_type: str, definition_format: str, definition: str) -> Typestore:
+    """Types by which a recording's messages of `message_type` are read: its own definition, else the standard one.
+
+    Raises DataError when there is no definition or it cannot be understood.
+    """
+    if not definition:
+        if message_type not in standard_types().fielddefs:
+            raise DataError(f"The recording has no definition of {message_type}, which is no standard type either.")
+        return standard_types()
+    store = get_typestore(Stores.EMPTY)
+    try:
+        if definition_format == "ros2msg":
+            store.register(get_types_from_msg(definition, message_type))
+        elif definition_format in ("ros2idl", "omgidl"):
+            for part in definition.split(_IDL_PART):
+                if part.strip():
+                    # Joined definitions carry the name of their type in front of each text.
+                    store.register(get_types_from_idl(part.split("\n", 1)[1] if _IDL_PART in definition else part))
+        else:
+            raise DataError(f"{message_type} is defined in the format '{definition_format}'; ros2msg and ros2idl work.")
+    except (TypesysError, SyntaxError, ValueError) as error:
+        raise DataError(f"The recording's definition of {message_type} cannot be understood: {error}") from error
+    return store
+
+
+def channel_types(channel: Channel) -> Typestore:
+    """Types by which the messages of `channel` are read. Raises DataError when they cannot be."""
+    if channel.encoding != "cdr":
+        raise DataError(f"{channel.topic} is encoded as '{channel.encoding}'; only 'cdr', as ROS 2 writes it, is read.")
+    return types_of(channel.type, channel.definition_format, channel.definition)
+
+
+def definition_of(message_type: str) -> tuple[str, str]:
+    """Text (ros2msg) and RIHS01 hash of a standard type, as a recording carries them. Raises DataError if unknown."""
+    store = standard_types()
+    if message_type not in store.fielddefs:
+        raise DataError(unknown_name("message type", message_type, store.fielddefs))
+    text, _ = store.generate_msgdef(message_type, ros_version=2)
+    return text, store.hash_rihs01(message_type)
+
+
+def message(message_type: str, **fields: Any) -> Any:
+    """A message object of a standard type, for `serialize`."""
+    return standard_types().types[message_type](**fields)
+
+
+def serialize(content: Any) -> bytes:
+    """CDR bytes of a message object made by `message`."""
+    return bytes(standard_types().serialize_cdr(content, content.__msgtype__, little_endian=True))
+
+
+def deserialize(store: Typestore, payload: bytes, message_type: str) -> Any:
+    """Message object of CDR bytes. Raises DataError when they do not fit the type."""
+    try:
+        return store.deserialize_cdr(payload, message_type)
+    except (SerdeError, KeyError) as error:
+        raise DataError(f"A message does not fit its type {message_type}: {error}") from error
+
+
+__all__ = [
+    "Nodetype",
+    "Typestore",
+    "channel_types",
+    "definition_of",
+    "deserialize",
+    "message",
+    "serialize",
+    "standard_types",
+    "types_of",
+]

@@ -1,0 +1,51 @@
+"""One run of an axis as arrays on one time base."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Signals of one axis, all of shape (n,) on `time` unless said otherwise, SI units, absolute pressures."""
+
+    name: str  # of the folder or file
+    path: Path
+    namespace: str
+    joint_name: str
+    start_ns: int  # header stamp of the first sample
+    time: Array  # [s] since the first sample, strictly increasing, by the header stamps of joint_states
+    position: Array  # [m]
+    velocity: Array | None  # [m/s], where the recording has it
+    effort: Array | None  # [N], where the recording has it
+    pressure_a: Array | None  # [Pa]
+    pressure_b: Array | None  # [Pa]
+    supply_pressure: Array | None  # [Pa]
+    voltage: Array | None  # [V], in force over [time[k], time[k + 1])
+    command_time: Array | None  # (m,) [s] on the clock of `time`: when each command was recorded
+    command: Array | None  # (m,) [V]
+    description: dict[str, Any] | None  # the last one in the recording
+    warnings: tuple[str, ...]  # sentences about what is wrong with the recording and what was done about it
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def sample_time(self) -> float:
+        """Median time between samples [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last sample [s]."""
+        return float(self.time[-1])
+
+    @property
+    def force_driven(self) -> bool:
+        """Whether this is an axis driven by a measured force, `effort`, and not by a valve."""
+        return self.voltage is None and self.effort is not None

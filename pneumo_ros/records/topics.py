@@ -1,0 +1,219 @@
+"""The messages of a recording as columns: one array per topic and field, decoded in bulk."""
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.records.bag import Bag
+from pneumo_ros.records.block import Block, Channel, Integers, gather
+from pneumo_ros.records.layout import Layout, Leaf, leaves
+from pneumo_ros.records.message_types import Typestore, channel_types, deserialize
+
+MOST_LAYOUTS = 64  # of one topic; beyond, its messages are deserialized one by one
+
+
+class Part(NamedTuple):
+    """Messages of one layout and their places among the messages of the topic, in the order of the file."""
+
+    layout: Layout
+    rows: NDArray[np.void]
+    places: Integers
+
+
+class TopicData:
+    """Messages of one topic in the order of recorded time; `data["header.stamp.sec"]` is a column, made when asked for.
+
+    A column has shape (n,) for numbers and strings, (n, k) for arrays and for sequences that are equally long in all
+    messages; else it holds one object per message. Strings are `str`, arrays of messages are lists.
+    """
+
+    def __init__(self, channel: Channel, log_time: Integers, parts: list[Part], odd: dict[int, bytes]) -> None:
+        """`log_time` (n,) [ns] in the order of the file; `odd` are messages, by place, that no layout describes."""
+        self.name, self.type = channel.topic, channel.type
+        self._store = channel_types(channel)
+        self._leaves = {leaf.path: leaf for leaf in leaves(self._store, channel.type)}
+        self._parts, self._odd = parts, odd
+        # Recorders write in the order of arrival; several files or clocks may still overlap.
+        self._order = None if np.all(log_time[1:] >= log_time[:-1]) else np.argsort(log_time, kind="stable")
+        self.log_time = log_time if self._order is None else log_time[self._order]
+
+    def __len__(self) -> int:
+        return len(self.log_time)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return tuple(self._leaves)
+
+    def __getitem__(self, field: str) -> NDArray[Any]:
+        if field not in self._leaves:
+            raise DataError(f"{self.name} ({self.type}): {unknown_name('field', field, self._leaves)}")
+        leaf = self._leaves[field]
+        pieces = [(part.places, _values(part, leaf)) for part in self._parts]
+        pieces += [(np.array([place]), _single(value, leaf)) for place, value in self._odd_values(field)]
+        column = _join(pieces, len(self), leaf)
+        return column if self._order is None else column[self._order]
+
+    @property
+    def stamp(self) -> Integers:
+        """Header stamps (n,) [ns]. Raises DataError when the messages have none."""
+        stamp: Integers = self["header.stamp.sec"].astype(np.int64) * 1_000_000_000 + self["header.stamp.nanosec"]
+        return stamp
+
+    @cached_property
+    def _odd_messages(self) -> dict[int, Any]:
+        """Messages without a layout, deserialized one by one."""
+        return {place: deserialize(self._store, payload, self.type) for place, payload in self._odd.items()}
+
+    def _odd_values(self, field: str) -> Iterable[tuple[int, Any]]:
+        for place, content in self._odd_messages.items():
+            for name in field.split("."):
+                content = getattr(content, name)
+            yield place, content
+
+
+class Collector:
+    """Takes the blocks of a recording and sorts the messages of one topic by layout."""
+
+    def __init__(self, channel: Channel) -> None:
+        self.channel = channel
+        self._store: Typestore = channel_types(channel)
+        self._leaves = leaves(self._store, channel.type)
+        self._bulk = all(leaf.base != "message" for leaf in self._leaves)
+        self._log_times: list[Integers] = []
+        self._taken = 0
+        self._layouts: dict[Layout, list[tuple[NDArray[np.void], Integers]]] = {}
+        self._odd: dict[int, bytes] = {}
+
+    def take(self, block: Block, chosen: Integers) -> None:
+        """Add the messages of `block` at the indices `chosen`."""
+        self._log_times.append(block.log_time[chosen])
+        places = np.arange(self._taken, self._taken + len(chosen))
+        self._taken += len(chosen)
+        length = block.length[chosen]
+        for size in np.unique(length).tolist():
+            same = length == size
+            self._sort(gather(block.data, block.start[chosen][same], size), places[same])
+
+    def data(self) -> TopicData:
+        """Everything taken so far."""
+        parts = []
+        for layout, pieces in self._layouts.items():
+            rows, places = zip(*pieces, strict=True)
+            parts.append(Part(layout, np.concatenate(rows).view(layout.dtype), np.concatenate(places)))
+        none = np.empty(0, dtype=np.int64)
+        return TopicData(self.channel, np.concatenate([none, *self._log_times]), parts, self._odd)
+
+    def _sort(self, rows: NDArray[np.void], places: Integers) -> None:
+        """Give `rows`, all of one length, to the layouts they have, learning those that are new."""
+        for layout in [one for one in self._layouts if one.length == rows.itemsize]:
+            rows, places = self._give(layout, rows, places)
+        while len(rows):
+            layout_or_none = self._learn(rows[0].tobytes())
+            if layout_or_none is None:
+                self._odd[int(places[0])] = rows[0].tobytes()
+                rows, places = rows[1:], places[1:]
+            else:
+                rows, places = self._give(layout_or_none, rows, places)
+
+    def _learn(self, payload: bytes) -> Layout | None:
+        """Layout of a message; None when it must be deserialized by itself."""
+        if not self._bulk or len(self._layouts) >= MOST_LAYOUTS:
+            return None
+        try:
+            layout = Layout(payload, self._leaves)
+        except ValueError:  # rosbags will say what is wrong with it, if it is asked for
+            return None
+        self._layouts[layout] = []
+        return layout
+
+    def _give(self, layout: Layout, rows: NDArray[np.void], places: Integers) -> tuple[NDArray[np.void], Integers]:
+        """Give `layout` the rows that match it; the others are returned."""
+        same = layout.matches(rows)
+        if same.all():
+            self._layouts[layout].append((rows, places))
+            return rows[:0], places[:0]
+        if same.any():
+            self._layouts[layout].append((rows[same], places[same]))
+        return rows[~same], places[~same]
+
+
+def read_topics(path: str | Path, topics: Iterable[str] | None = None) -> dict[str, TopicData]:
+    """Columns of every topic of the recording at `path`, or of `topics` only (as spelt in the recording).
+
+    Raises DataError when there is no recording, a topic is not in it, or its messages cannot be decoded.
+    """
+    if topics is None:
+        return collect(Bag(path))[0]
+    wanted = set(topics)
+    found, types = collect(Bag(path), lambda channel: channel.topic in wanted)
+    if absent := sorted(wanted - set(found)):
+        raise DataError(f"{path}: {unknown_name('topic', absent[0], types)}")
+    return found
+
+
+def collect(
+    bag: Bag, wanted: Callable[[Channel], bool] = lambda channel: True
+) -> tuple[dict[str, TopicData], dict[str, str]]:
+    """Columns of the topics of `bag` that are `wanted`, and the types of all topics that have messages."""
+    collectors: dict[str, Collector] = {}
+    types: dict[str, str] = {}
+    for block in bag.blocks():
+        for channel, chosen in _by_channel(block):
+            types.setdefault(channel.topic, channel.type)
+            if not wanted(channel):
+                continue
+            if channel.topic not in collectors:
+                collectors[channel.topic] = Collector(channel)
+            if channel.type == types[channel.topic]:
+                collectors[channel.topic].take(block, chosen)
+            else:
+                raise DataError(f"{channel.topic} has messages of two types: {types[channel.topic]}, {channel.type}.")
+    return {topic: collector.data() for topic, collector in collectors.items()}, types
+
+
+def _by_channel(block: Block) -> Iterable[tuple[Channel, Integers]]:
+    """The channels of a block and the indices of their messages."""
+    for number in np.unique(block.channel).tolist():
+        yield block.channels[number], np.flatnonzero(block.channel == number)
+
+
+def _values(part: Part, leaf: Leaf) -> NDArray[Any]:
+    """Column of one part."""
+    if leaf.base != "string":
+        return part.rows[leaf.path].astype(leaf.dtype)
+    column = np.empty(len(part.rows), dtype=object)
+    column.fill(part.layout.texts[leaf.path])
+    return column
+
+
+def _single(value: Any, leaf: Leaf) -> NDArray[Any]:
+    """Column of one message."""
+    if leaf.base not in ("string", "message"):
+        return np.asarray(value, dtype=leaf.dtype)[np.newaxis]
+    column = np.empty(1, dtype=object)
+    column[0] = tuple(value) if leaf.base == "string" and not isinstance(value, str) else value
+    return column
+
+
+def _join(pieces: list[tuple[Integers, NDArray[Any]]], count: int, leaf: Leaf) -> NDArray[Any]:
+    """One column of `count` values from pieces, each with the places it goes to."""
+    shapes = {values.shape[1:] for _, values in pieces}
+    if len(pieces) == 1:  # a single piece is in order
+        return pieces[0][1]
+    if len(shapes) > 1:
+        column = np.empty(count, dtype=object)
+        for places, values in pieces:
+            for place, value in zip(places.tolist(), values, strict=True):
+                column[place] = value
+        return column
+    column = np.empty((count, *(shapes.pop() if shapes else leaf.shape)), dtype=leaf.dtype)
+    for places, values in pieces:
+        column[places] = values
+    return column
