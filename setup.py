@@ -21,7 +21,7 @@ ROS_WHEELS = [
     "ros-rosgraph-msgs",
 ]
 TEST = ["pytest>=7.4"]
-DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel"]
+DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
 
 def files(folder: str, pattern: str) -> list[str]:
@@ -60,7 +60,7 @@ setup(
     ],
     zip_safe=False,
     python_requires=">=3.10",
-    install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap"],
+    install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap", "apsw", "lz4", "zstandard"],
     extras_require={"ros": ROS_WHEELS, "test": TEST, "dev": TEST + DEV},
     entry_points={
         "console_scripts": [

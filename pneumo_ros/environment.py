@@ -30,6 +30,9 @@ LIBRARIES = {
     "yaml": ("pyyaml", "python3-yaml"),
     "rosbags": ("rosbags", None),
     "mcap": ("mcap", None),
+    "apsw": ("apsw", None),  # these three come with rosbags and mcap
+    "lz4": ("lz4", None),
+    "zstandard": ("zstandard", None),
 }
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 

@@ -46,12 +46,12 @@ def parse_drive(text: str) -> Drive:
 
 def _constant(text: str) -> Drive:
     (volts,) = _numbers(text, "", "constant:V", "constant:1.1")
-    return Drive(lambda time: 0.0 * time + volts, None, f"{volts:g} V")
+    return Drive(lambda time: volts * (time >= 0.0).astype(float), None, f"{volts:g} V")
 
 
 def _step(text: str) -> Drive:
     volts, start = _numbers(text, "@", "step:V@T", "step:2.5@1")
-    return Drive(lambda time: volts * (time >= start), None, f"0 V, from {start:g} s on {volts:g} V")
+    return Drive(lambda time: volts * (time >= start).astype(float), None, f"0 V, from {start:g} s on {volts:g} V")
 
 
 def _sine(text: str) -> Drive:
@@ -62,7 +62,8 @@ def _sine(text: str) -> Drive:
     def voltage(time: "Array") -> "Array":
         import numpy as np
 
-        return volts * np.sin(2.0 * math.pi * hertz * time)
+        wave: Array = volts * np.sin(2.0 * math.pi * hertz * time)
+        return wave
 
     return Drive(voltage, None, f"{volts:g} V sine of {hertz:g} Hz")
 
@@ -104,11 +105,15 @@ def read_csv(path: Path) -> Drive:
         raise DataError(f"{path} holds {len(rows)} rows; needed are at least two of time [s], voltage [V]")
     time, volts = np.array(rows).T
 
+    time -= time[0]
+
     def voltage(at: "Array") -> "Array":
-        held: Array = volts[np.clip(np.searchsorted(time - time[0], at, side="right") - 1, 0, None)]
+        tolerance = 1e-9  # s; sample k starts at k dt in whichever way its digits round
+        held: Array = volts[np.searchsorted(time, at + tolerance, side="right") - 1]
         return held
 
-    return Drive(voltage, float(time[-1] - time[0]), f"{path.name}, {len(rows)} rows")
+    # The last row is held as long as the one before it.
+    return Drive(voltage, float(2.0 * time[-1] - time[-2]), f"{path.name}, {len(rows)} rows")
 
 
 def _row(line: str) -> tuple[float, float] | None:

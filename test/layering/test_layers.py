@@ -17,6 +17,7 @@ ALLOWED = {
     "plant": set(),
     "records": set(),
     "control": set(),
+    "config": set(),
     "identify": {"plant", "records", "control"},
     "diagnose": {"identify", "plant", "records", "control"},
     "report": {"diagnose", "identify", "plant", "records", "control"},

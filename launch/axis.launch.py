@@ -1,0 +1,42 @@
+"""The pneumatic axis under position control: simulator and controller, in one namespace, recorded if wanted.
+
+ros2 launch pneumo_ros axis.launch.py namespace:=cylinder_1 record:=run_1
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+DEFAULT_MACHINE = PathJoinSubstitution([FindPackageShare("pneumo_ros"), "config", "axis.yaml"])
+
+ARGUMENTS = [
+    DeclareLaunchArgument("namespace", default_value="", description="namespace of this cylinder; empty for none"),
+    DeclareLaunchArgument("params", default_value=DEFAULT_MACHINE, description="machine file, also read by pneumo"),
+    DeclareLaunchArgument("record", default_value="", description="folder to record into; empty records nothing"),
+]
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Simulator, controller and, when `record` names a folder, the recorder."""
+    namespace = LaunchConfiguration("namespace")
+    record = LaunchConfiguration("record")
+    simulator = Node(
+        package="pneumo_ros",
+        executable="simulator",
+        namespace=namespace,
+        parameters=[LaunchConfiguration("params")],
+        output="screen",
+    )
+    controller = Node(package="pneumo_ros", executable="controller", namespace=namespace, output="screen")
+    recorder = Node(
+        package="pneumo_ros",
+        executable="recorder",
+        namespace=namespace,
+        parameters=[{"output": record}],
+        output="screen",
+        condition=IfCondition(PythonExpression(["'", record, "' != ''"])),
+    )
+    return LaunchDescription([*ARGUMENTS, simulator, controller, recorder])

@@ -1,0 +1,85 @@
+"""What is printed where."""
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pneumo_ros.command.console import Console, Progress, columns, plain
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_results_and_messages_go_different_ways(capsys: pytest.CaptureFixture[str]) -> None:
+    console = Console()
+    console.say("result")
+    console.note("message")
+    assert capsys.readouterr() == ("result\n", "message\n")
+
+
+def test_quiet_keeps_results(capsys: pytest.CaptureFixture[str]) -> None:
+    console = Console(quiet=True)
+    console.say("result")
+    console.note("message")
+    with console.progress("work") as progress:
+        progress(0.5)
+    assert capsys.readouterr() == ("result\n", "")
+
+
+def test_json_on_stdout_is_alone_there(capsys: pytest.CaptureFixture[str]) -> None:
+    console = Console(json_target="-")
+    console.say("for a person")
+    console.json({"rms": np.float64(2.5), "worst": float("nan"), "shape": np.arange(2), "file": Path("a")})
+    assert json.loads(capsys.readouterr().out) == {"rms": 2.5, "worst": None, "shape": [0, 1], "file": "a"}
+
+
+def test_json_file_appears_beside_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    console = Console(json_target=str(tmp_path / "result.json"))
+    console.say("for a person")
+    console.json({"value": 1})
+    assert capsys.readouterr().out == "for a person\n"
+    assert json.loads((tmp_path / "result.json").read_text()) == {"value": 1}
+    assert [path.name for path in tmp_path.iterdir()] == ["result.json"]
+
+
+def test_plain_keeps_whole_numbers_and_truth() -> None:
+    assert plain({"n": np.int64(3), "ok": np.bool_(True), "inner": [(np.inf, None)]}) == {
+        "n": 3,
+        "ok": True,
+        "inner": [[None, None]],
+    }
+
+
+def test_progress_without_a_terminal_is_one_line_per_ten_percent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Progress, "WAIT", 0.0)
+    stream = io.StringIO()
+    with Progress("Comparing", stream) as progress:
+        for step in range(1001):
+            progress(step / 1000)
+    assert stream.getvalue().splitlines() == [f"Comparing: {percent} %" for percent in range(10, 101, 10)]
+
+
+def test_progress_on_a_terminal_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Progress, "WAIT", 0.0)
+    stream = Terminal()
+    with Progress("Comparing", stream) as progress:
+        progress(0.5)
+    assert "Comparing [############             ]  50 %" in stream.getvalue()
+    assert stream.getvalue().endswith("\r\x1b[K")
+    assert "\n" not in stream.getvalue()
+
+
+def test_short_work_shows_no_progress() -> None:
+    stream = io.StringIO()
+    with Progress("Reading", stream) as progress:
+        progress(1.0)
+    assert stream.getvalue() == ""
+
+
+def test_columns_align() -> None:
+    assert columns([("a", "1"), ("bcd", "10")], right=[1]) == "a     1\nbcd  10"
