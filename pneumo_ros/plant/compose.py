@@ -47,29 +47,7 @@ class Composition:
 
 # names the generated entry points use themselves
 _RESERVED = frozenset(
-    [
-        "x",
-        "q",
-        "u",
-        "h",
-        "k",
-        "s",
-        "i",
-        "b",
-        "X",
-        "out",
-        "half",
-        "middle",
-        "elapsed",
-        "voltage",
-        "first",
-        "t0",
-        "stride",
-        "values",
-        "np",
-        "math",
-        "LANES",
-    ]
+    "x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts values np math LANES".split()
 )
 
 

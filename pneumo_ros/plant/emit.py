@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.library import FRAME
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.plant.source import SourceBook
 
@@ -138,6 +139,7 @@ def module_text(resolver: "Resolver", parameters: tuple[str, ...], observed: tup
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
     parts += [_step(resolver, states, rates, names), _run(states, names), _lanes(states, names)]
+    parts += [_follow(resolver, states, names)]
     parts += [_pointwise("rates", "derivatives", states, len(states), names)]
     parts += [_pointwise("observe", "observation", states, len(observed), names)]
     return "\n\n".join(parts) + "\n"
@@ -206,15 +208,16 @@ def _run(states: list[str], names: list[str]) -> str:
     store = "\n".join(f"        out[k, {i}] = {s}" for i, s in enumerate(states))
     final = "\n".join(f"    x[{i}] = {s}" for i, s in enumerate(states))
     return f'''@entry
-def run(x, q, voltage, t0, h, stride, out):
-    """Advance x (states,) through len(voltage) samples of `stride` steps; out (samples, states) after each sample."""
+def run(x, q, voltage, t0, h, stride, parts, out):
+    """Advance x (states,); out (samples, states) after each sample of `parts` held voltages of `stride` steps each."""
 {_unpack(names, "q", "{0}")}
 {_unpack(states, "x", "{0}")}
-    for k in range(voltage.shape[0]):
-        U = voltage[k]
-        for s in range(stride):
-            t = t0 + (k * stride + s) * h
-            {targets} = step({", ".join([*states, "U", "t", "h", *names])})
+    for k in range(out.shape[0]):
+        for j in range(parts):
+            U = voltage[k * parts + j]
+            for s in range(stride):
+                t = t0 + ((k * parts + j) * stride + s) * h
+                {targets} = step({", ".join([*states, "U", "t", "h", *names])})
 {store}
 {final}'''
 
@@ -232,21 +235,57 @@ def step_lanes(x, q, u, t, elapsed, h):
 
 
 @entry
-def run_lanes(x, q, voltage, first, t0, h, stride, out):
+def run_lanes(x, q, voltage, first, t0, h, stride, parts, out):
     """Advance blocks of LANES independent lanes.
 
-    x (blocks, states * LANES), q (blocks, parameters * LANES), first (blocks, LANES): index of each lane's first sample
-    in `voltage`, t0 (blocks, LANES), out (blocks, samples, states * LANES).
+    x (blocks, states * LANES), q (blocks, parameters * LANES), first (blocks, LANES): index of each lane's first entry
+    in `voltage`, t0 (blocks, LANES), out (blocks, samples, states * LANES); samples as in `run`.
     """
     u = np.empty(LANES)
     for b in range(x.shape[0]):
         x_b, q_b, t_b = x[b], q[b], t0[b]
         for k in range(out.shape[1]):
-            for i in range(LANES):
-                u[i] = voltage[first[b, i] + k]
-            for s in range(stride):
-                step_lanes(x_b, q_b, u, t_b, (k * stride + s) * h, h)
+            for j in range(parts):
+                for i in range(LANES):
+                    u[i] = voltage[first[b, i] + k * parts + j]
+                for s in range(stride):
+                    step_lanes(x_b, q_b, u, t_b, ((k * parts + j) * stride + s) * h, h)
             out[b, k, :] = x_b'''
+
+
+def _follow(resolver: "Resolver", states: list[str], names: list[str]) -> str:
+    own = [s for s in states if resolver.states[s].name not in FRAME]
+    measured = [s for s in states if s not in own]
+    between = "\n".join(
+        f"            {s} = X[k, {i}] + c * (X[k + 1, {i}] - X[k, {i}])" for i, s in enumerate(measured)
+    )
+    targets = ", ".join(s if s in own else "_" for s in states) + ","
+    load = "\n".join(f"    {s} = X[0, {states.index(s)}]" for s in own)
+    restore = "\n".join(f"        {s} = X[k + 1, {i}]" for i, s in enumerate(measured))
+    keep = "\n".join(f"        X[k + 1, {states.index(s)}] = {s}" for s in own)
+    call = f"derivatives({', '.join([*states, 'U', 't', *names])})"
+    store = "\n".join(f"        out[k + 1, {i}] = values[{i}]" for i in range(len(states)))
+    return f'''@entry
+def follow(X, q, voltage, t0, h, stride, out):
+    """Advance the effects' own states along measured motion and pressures, interpolated between samples.
+
+    X (samples, states): the frame's columns are given, the others are filled in from row 0 on; out (samples, states):
+    derivatives at every sample but the first, with voltage[k] held from sample k to k + 1.
+    """
+{_unpack(names, "q", "{0}")}
+{load}
+    for k in range(X.shape[0] - 1):
+        U = voltage[k]
+        for s in range(stride):
+            c = s / stride
+            t = t0 + (k * stride + s) * h
+{between}
+            {targets} = step({", ".join([*states, "U", "t", "h", *names])})
+{restore}
+{keep}
+        t = t0 + (k + 1) * stride * h
+        values = {call}
+{store}'''
 
 
 def _pointwise(name: str, function: str, states: list[str], width: int, names: list[str]) -> str:

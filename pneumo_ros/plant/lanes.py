@@ -19,7 +19,7 @@ def _blocks(rows: NDArray[Any], width: int) -> NDArray[Any]:
 
 def run_lanes(
     kernel: ModuleType, states: Array, parameters: Array, voltage: Array, first: NDArray[np.int64], start: Array,
-    h: float, stride: int, samples: int, threads: int,
+    h: float, stride: int, parts: int, samples: int, threads: int,
 ) -> Array:  # fmt: skip
     """Run `kernel.run_lanes` over all lanes, on `threads` threads; returns (lanes, samples, states)."""
     width, count = kernel.LANES, len(states)
@@ -33,7 +33,7 @@ def run_lanes(
     out = np.empty((len(x), samples, n * width))
 
     def part(which: slice) -> None:
-        kernel.run_lanes(x[which], q[which], voltage, f[which], t[which], h, stride, out[which])
+        kernel.run_lanes(x[which], q[which], voltage, f[which], t[which], h, stride, parts, out[which])
 
     share = -(-len(x) // max(threads, 1))
     parts = [slice(i, i + share) for i in range(0, len(x), share)]

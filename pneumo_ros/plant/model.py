@@ -141,19 +141,27 @@ class Model:
         return np.array([rest[s] for s in self.states])
 
     def simulate(
-        self, voltage: ArrayLike, state: ArrayLike, *, sample_time: float = 1e-3, step: float = STEP, start: float = 0.0
+        self,
+        voltage: ArrayLike,
+        state: ArrayLike,
+        *,
+        sample_time: float = 1e-3,
+        step: float = STEP,
+        start: float = 0.0,
+        parts: int = 1,
     ) -> Array:
         """Integrate from `state` (states,) while voltage[k] [V] is held over sample k; returns (samples, states).
 
         Row k is the state at the END of sample k. `sample_time` [s] is divided into equal steps no longer than `step`
-        [s]; `start` [s] is the time of the first sample. Raises NumericalError when the state leaves the finite
-        numbers, naming the time, UsageError for a step that is not positive.
+        [s]; `start` [s] is the time of the first sample. With `parts` > 1 a sample holds that many voltages one after
+        another. Raises NumericalError when the state leaves the finite numbers, naming the time, UsageError for a step
+        that is not positive or a voltage that does not fill whole samples.
         """
         held = np.array(voltage, dtype=float, ndmin=1)
         x = self._state_vector(state)
-        out = np.empty((len(held), len(x)))
-        stride, h = substeps(sample_time, step)
-        self.kernel.run(x, self.values, held, start, h, stride, out)
+        out = np.empty((_whole(len(held), parts), len(x)))
+        stride, h = substeps(sample_time / parts, step)
+        self.kernel.run(x, self.values, held, start, h, stride, parts, out)
         if not np.isfinite(x).all():
             bad = int(np.argmin(np.isfinite(out).all(axis=1)))
             raise NumericalError(
@@ -173,32 +181,54 @@ class Model:
         sample_time: float = 1e-3,
         step: float = STEP,
         start: float = 0.0,
+        parts: int = 1,
         threads: int = 1,
     ) -> Array:
         """Integrate many lanes at once, several times faster each than `simulate`; returns (lanes, samples, states).
 
-        voltage (n,) [V] is shared; lane i holds voltage[first[i] + k] over its sample k (first defaults to 0).
+        voltage (n,) [V] is shared; lane i begins with voltage[first[i]] (first defaults to 0) and goes on as `simulate`.
         states (lanes, states), parameters (lanes, parameters) or None for the model's own, samples defaults to what
         the voltage holds. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that
         do not fit.
         """
         x = np.array(states, dtype=float, ndmin=2)
-        own = np.tile(self.values, (len(x), 1))
-        q = own if parameters is None else np.array(parameters, dtype=float)
-        stride, h = substeps(sample_time, step)
+        q = np.tile(self.values, (len(x), 1)) if parameters is None else np.array(parameters, dtype=float)
         held = np.array(voltage, dtype=float, ndmin=1)
         begin = np.zeros(len(x), dtype=np.int64) if first is None else np.asarray(first, dtype=np.int64)
-        count = len(held) - int(begin.max(initial=0)) if samples is None else samples
         if x.shape[1] != len(self.states) or q.shape != (len(x), len(self.parameters)) or begin.shape != (len(x),):
             raise UsageError(
                 f"lanes do not fit: states {x.shape}, parameters {q.shape}, first {begin.shape}; "
                 f"needed are (lanes, {len(self.states)}), (lanes, {len(self.parameters)}), (lanes,)"
             )
-        if begin.min(initial=0) < 0 or begin.max(initial=0) + count > len(held):
-            raise UsageError(f"lanes reach beyond the {len(held)} samples of voltage")
-        return run_lanes(
-            self.kernel, x, q, held, begin, start + sample_time * begin.astype(float), h, stride, count, threads
-        )
+        last = int(begin.max(initial=0))
+        count = _whole(len(held) - last, parts) if samples is None else samples
+        if begin.min(initial=0) < 0 or last + count * parts > len(held):
+            raise UsageError(f"lanes reach beyond the {len(held)} voltages given")
+        stride, h = substeps(sample_time / parts, step)
+        t0 = start + begin.astype(float) * (sample_time / parts)
+        return run_lanes(self.kernel, x, q, held, begin, t0, h, stride, parts, count, threads)
+
+    def follow(
+        self, measured: ArrayLike, voltage: ArrayLike, rest: ArrayLike, *, sample_time: float = 1e-3, step: float = STEP
+    ) -> tuple[Array, Array]:
+        """Drive the effects' own states along a measured motion; returns states and derivatives, both (samples, states).
+
+        measured (samples, m): the frame's states (y, v, p_a, p_b; or y, v when force-driven) at every sample;
+        voltage[k] is held from sample k to k + 1; rest: values of the other states at sample 0. The derivatives are
+        what the equations claim at each sample: where they differ from the measurement, the equation fails. Row 0 of
+        the derivatives repeats row 1.
+        """
+        given, tail = np.array(measured, dtype=float, ndmin=2), np.array(rest, dtype=float, ndmin=1)
+        X = np.empty((len(given), len(self.states)))
+        if given.shape[1] + len(tail) != X.shape[1]:
+            raise UsageError(f"{given.shape[1]} measured and {len(tail)} other states given; needed: {self.states}")
+        X[:, : given.shape[1]] = given
+        X[0, given.shape[1] :] = tail
+        out = np.empty_like(X)
+        stride, h = substeps(sample_time, step)
+        self.kernel.follow(X, self.values, np.array(voltage, dtype=float), 0.0, h, stride, out)
+        out[0] = out[1] if len(out) > 1 else 0.0
+        return X, out
 
     def outputs(
         self, states: ArrayLike, voltage: ArrayLike | None = None, start: float = 0.0, sample_time: float = 1e-3
@@ -244,6 +274,12 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
     stride = max(1, math.ceil(sample_time / step - 1e-9))
     return stride, sample_time / stride
+
+
+def _whole(voltages: int, parts: int) -> int:
+    if parts < 1 or voltages % parts:
+        raise UsageError(f"{voltages} voltages do not fill whole samples of {parts}")
+    return voltages // parts
 
 
 def _checked(composition: Composition, values: Mapping[str, object], defaults: bool) -> dict[str, float]:

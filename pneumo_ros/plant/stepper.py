@@ -25,7 +25,7 @@ class Stepper:
 
     def _adopt(self, model: Model, state: NDArray[np.float64]) -> None:
         out = np.empty((1, len(state)))
-        model.kernel.run(state.copy(), model.values, np.zeros(0), 0.0, self._h, self._stride, out[:0])
+        model.kernel.run(state.copy(), model.values, np.zeros(0), 0.0, self._h, self._stride, 1, out[:0])
         self.model, self.state, self._values, self._out, self._run = model, state, model.values, out, model.kernel.run
 
     def advance(self, voltage: float) -> NDArray[np.float64]:
@@ -35,7 +35,7 @@ class Stepper:
         """
         self._voltage[0] = voltage
         before = self.state.copy()
-        self._run(self.state, self._values, self._voltage, self.time, self._h, self._stride, self._out)
+        self._run(self.state, self._values, self._voltage, self.time, self._h, self._stride, 1, self._out)
         if not np.isfinite(self.state).all():
             self.state = before
             raise NumericalError(f"the state left the finite numbers at t = {self.time:.3f} s")
