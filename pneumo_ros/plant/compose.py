@@ -47,7 +47,33 @@ class Composition:
 
 # names the generated entry points use themselves
 _RESERVED = frozenset(
-    "x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts values np math LANES".split()
+    [
+        "x",
+        "q",
+        "u",
+        "h",
+        "k",
+        "s",
+        "i",
+        "j",
+        "b",
+        "c",
+        "X",
+        "_",
+        "out",
+        "half",
+        "middle",
+        "elapsed",
+        "voltage",
+        "first",
+        "t0",
+        "stride",
+        "parts",
+        "values",
+        "np",
+        "math",
+        "LANES",
+    ]
 )
 
 

@@ -36,10 +36,10 @@ def run_lanes(
         kernel.run_lanes(x[which], q[which], voltage, f[which], t[which], h, stride, parts, out[which])
 
     share = -(-len(x) // max(threads, 1))
-    parts = [slice(i, i + share) for i in range(0, len(x), share)]
-    if len(parts) == 1:
-        part(parts[0])
+    shares = [slice(i, i + share) for i in range(0, len(x), share)]
+    if len(shares) == 1:
+        part(shares[0])
     else:
-        with ThreadPoolExecutor(len(parts)) as pool:
-            list(pool.map(part, parts))
+        with ThreadPoolExecutor(len(shares)) as pool:
+            list(pool.map(part, shares))
     return np.asarray(out.reshape(len(x), samples, n, width).transpose(0, 3, 1, 2).reshape(-1, samples, n)[:count])

@@ -186,7 +186,7 @@ class Model:
     ) -> Array:
         """Integrate many lanes at once, several times faster each than `simulate`; returns (lanes, samples, states).
 
-        voltage (n,) [V] is shared; lane i begins with voltage[first[i]] (first defaults to 0) and goes on as `simulate`.
+        voltage (n,) [V] is shared; lane i begins with voltage[first[i]] (default 0) and goes on as `simulate`.
         states (lanes, states), parameters (lanes, parameters) or None for the model's own, samples defaults to what
         the voltage holds. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that
         do not fit.
@@ -213,8 +213,8 @@ class Model:
     ) -> tuple[Array, Array]:
         """Drive the effects' own states along a measured motion; returns states and derivatives, both (samples, states).
 
-        measured (samples, m): the frame's states (y, v, p_a, p_b; or y, v when force-driven) at every sample;
-        voltage[k] is held from sample k to k + 1; rest: values of the other states at sample 0. The derivatives are
+        measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven); voltage[k]
+        is held from sample k to k + 1; rest: values of the other states at sample 0. The derivatives are
         what the equations claim at each sample: where they differ from the measurement, the equation fails. Row 0 of
         the derivatives repeats row 1.
         """
