@@ -1,0 +1,64 @@
+"""An MCAP file that is valid whenever it is looked at, also after its writer was killed."""
+
+import os
+from pathlib import Path
+
+from mcap.data_stream import RecordBuilder
+from mcap.records import DataEnd, Footer
+
+from pneumo_ros.records.mcap_file import MAGIC
+
+
+def _end() -> bytes:
+    """The records that end an MCAP file without a summary."""
+    builder = RecordBuilder()
+    DataEnd(0).write(builder)
+    Footer(summary_start=0, summary_offset_start=0, summary_crc=0).write(builder)
+    records: bytes = builder.end()  # type: ignore[no-untyped-call]  # mcap annotates only some of its methods
+    return records + MAGIC
+
+
+class GrowingFile:
+    """Output stream of an `mcap.writer.Writer`: each flush puts what is new, and a new end, over the old end.
+
+    That is one write to the system, which a killed process either has done or has not. Readers that insist on an end,
+    rosbags among them, read such a file at any time.
+    """
+
+    END = _end()
+
+    def __init__(self, path: Path) -> None:
+        """Create the file. Raises OSError, also when it exists."""
+        self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+        self._new = bytearray()
+        self._settled = 0  # bytes of the file that stay as they are
+
+    def write(self, data: bytes) -> int:
+        """Keep `data` for the next flush."""
+        self._new += data
+        return len(data)
+
+    def tell(self) -> int:
+        """Position of the next byte."""
+        return self._settled + len(self._new)
+
+    def flush(self) -> None:
+        """Bring what is new to the file. Raises OSError when the disk is full."""
+        _write_at(self._descriptor, self._new + self.END, self._settled)
+        self._settled += len(self._new)
+        self._new.clear()
+
+    def close(self) -> None:
+        """Bring the rest, which has an end of its own, to the disk."""
+        try:
+            _write_at(self._descriptor, self._new, self._settled)
+            os.fsync(self._descriptor)
+        finally:
+            os.close(self._descriptor)
+
+
+def _write_at(descriptor: int, data: bytearray, position: int) -> None:
+    """Write all of `data`: the system may take less at a time."""
+    done = 0
+    while done < len(data):
+        done += os.pwrite(descriptor, data[done:], position + done)
