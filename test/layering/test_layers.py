@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from hiding import environment_without
 
 import pneumo_ros
 
@@ -74,25 +75,16 @@ def test_every_room_has_its_rule() -> None:
     assert rooms <= set(ALLOWED), f"say in ALLOWED what these may import: {sorted(rooms - set(ALLOWED))}"
 
 
-def test_physics_recordings_and_verbs_run_without_ros() -> None:
+def test_physics_recordings_and_verbs_run_without_ros(tmp_path: Path) -> None:
     """With rclpy and the messages hidden from Python, everything but the nodes still imports."""
     modules = [
         ".".join(("pneumo_ros", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")
         for path in FILES
         if room_of(path) not in ("ros", "__main__")
     ]
-    program = f"""
-import importlib, sys
-class Hidden:
-    def find_spec(self, name, path=None, target=None):
-        top = name.partition(".")[0]
-        if top in {sorted(ROS)!r} or top.endswith(("_msgs", "_srvs", "_interfaces")):
-            raise ModuleNotFoundError(f"no {{name}} here", name=top)
-sys.meta_path.insert(0, Hidden())
-for module in {modules!r}:
-    importlib.import_module(module)
-"""
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+    program = f"import importlib\nfor module in {modules!r}:\n    importlib.import_module(module)"
+    environment = environment_without(tmp_path, *ROS)
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
 
 

@@ -1,0 +1,64 @@
+"""What the project says of itself: two commands to start, figures with their command, nothing private."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+TEXT = (".py", ".md", ".rst", ".toml", ".cfg", ".xml", ".yaml", ".yml", ".txt", ".sh", ".c", "")
+# Paths of one machine, and a home folder other than the reader's
+MACHINE_PATHS = re.compile(r"(?<![\w.$}])/(work|tmp|root|home/\w+|opt/pypi)\b")
+PRIVATE = re.compile(r"\b(issue #?\d+|pypi[-.]\w+/simple)\b", re.IGNORECASE)
+
+
+def project_files() -> list[Path]:
+    """Text files of the project: those git knows, or those of the folder where there is no git."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode == 0 and listed.stdout:
+        paths = [ROOT / name for name in listed.stdout.split("\0") if name]
+    else:
+        paths = [path for path in ROOT.rglob("*") if not any(part.startswith(".") for part in path.parts)]
+    return [path for path in paths if path.suffix in TEXT and path.is_file() and path != Path(__file__)]
+
+
+FILES = project_files()
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_text_holds_nothing_of_one_machine(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    found = [match.group(0) for pattern in (MACHINE_PATHS, PRIVATE) for match in pattern.finditer(text)]
+    assert not found
+
+
+def code_blocks(text: str) -> list[str]:
+    """Contents of the fenced blocks of a Markdown text."""
+    return re.findall(r"^```\w*\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def test_the_readme_begins_with_two_commands() -> None:
+    first = code_blocks(README)[0].strip().splitlines()
+    assert [line.partition("#")[0].split() for line in first] == [["make", "demo"], ["make", "test"]]
+
+
+def test_every_table_of_figures_names_the_command_that_prints_it() -> None:
+    """A block that shows printed figures starts with its command, `$ command`."""
+    for block in code_blocks(README):
+        if re.search(r"\d+\.\d+ (us|ns|ms|s|x|MB)\b", block):
+            assert block.startswith("$ "), block
+
+
+def test_files_the_readme_names_exist() -> None:
+    for link in re.findall(r"\]\((?!https?:|#)([^)#]+)", README):
+        assert (ROOT / link).exists(), link
+
+
+def test_verbs_the_readme_shows_exist() -> None:
+    from pneumo_ros.command.main import VERBS
+
+    shown = set(re.findall(r"^(?:\$ )?pneumo (\w+)", "\n".join(code_blocks(README)), re.MULTILINE))
+    assert shown <= set(VERBS)
+    assert set(VERBS) <= set(re.findall(r"pneumo (\w+)", README)), "the README leaves a verb out"
