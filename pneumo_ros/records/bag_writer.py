@@ -65,7 +65,7 @@ class BagWriter:
         self.counts[topic.name] = 0
 
     def write(self, topic: str, log_time: int, payload: bytes, publish_time: int | None = None) -> None:
-        """Add a message: times in ns, `payload` in CDR. Raises UsageError for unknown topics, DataError for a full disk."""
+        """Add CDR bytes, times in ns. Raises UsageError for an unknown topic, DataError when the disk fails."""
         if topic not in self._topics:
             raise UsageError(unknown_name("topic", topic, self._topics))
         channel = self._topics[topic][2]
