@@ -1,0 +1,52 @@
+"""What all nodes of this package share: parameters from data, diagnostics, and a start and an end of their own.
+
+class Recorder(AxisNode):
+    def __init__(self) -> None:
+        super().__init__("recorder", SETTINGS)      # declared: self.parameters["name"]
+        self.parameters.refuse_unknown()
+
+    def health(self) -> Health: ...                 # /diagnostics, once per second
+    def start(self) -> None: ...                    # after the executor runs
+    def finish(self) -> None: ...                   # on SIGINT or SIGTERM, while topics still work
+
+def main() -> int:
+    return run(lambda: [Recorder()], "recorder")
+"""
+
+from collections.abc import Iterable
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.ros.diagnostics import Diagnostics, Health
+from pneumo_ros.ros.parameters import Parameters
+from pneumo_ros.ros.setting import Setting
+
+
+class AxisNode(Node):
+    """Base of the nodes: `parameters`, 1 Hz `/diagnostics` from `health`, `start` and `finish` for subclasses."""
+
+    def __init__(self, name: str, settings: Iterable[Setting]) -> None:
+        """Declare `settings`; raises UsageError for a given value of wrong type or out of range."""
+        try:
+            super().__init__(name, automatically_declare_parameters_from_overrides=True)
+        except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+            raise UsageError(str(error)) from error
+        self.failure: Exception | None = None  # what ended this node; `run` tells it
+        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self.parameters = Parameters(self)
+        self.parameters.declare(settings)
+        self.diagnostics = Diagnostics(self, self.health)
+
+    def health(self) -> Health:
+        """What /diagnostics says about this node."""
+        return Health()
+
+    def start(self) -> None:
+        """Called once, when callbacks are being served."""
+
+    def finish(self) -> None:
+        """Called once before the end, while callbacks are still served and topics still work."""

@@ -1,0 +1,118 @@
+"""Parameters of a node, declared from data: checked as a whole before any is taken, whole numbers accepted as real."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.ros.setting import Setting
+
+_ROS_OWN = ("use_sim_time", "start_type_description_service")
+Values = Mapping[str, Any]
+
+
+class Parameters:
+    """The declared parameters of one node.
+
+    `given` are those from files and command line, which rclpy declared without description. A change from outside runs
+    `check` with all values as they would become, which may raise UsageError and changes nothing, then `apply`.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._settings: dict[str, Setting] = {}
+        self._open = False  # while this class itself declares
+        self.check: Callable[[Values], object] = lambda values: None
+        self.apply: Callable[[Values], object] = lambda values: None
+        names = node.list_parameters([], 0).names
+        self.given: dict[str, Any] = {
+            name: node.get_parameter(name).value
+            for name in names
+            if name not in _ROS_OWN and not name.startswith("qos_overrides.")
+        }
+        for name in self.given:
+            node.undeclare_parameter(name)
+        node.add_pre_set_parameters_callback(self._whole_numbers)
+        node.add_on_set_parameters_callback(self._validate)
+        node.add_post_set_parameters_callback(self._take)
+
+    def declare(self, settings: Iterable[Setting]) -> None:
+        """Declare `settings` with what was given for them, else their defaults.
+
+        Raises UsageError for a value of the wrong type or out of range.
+        """
+        for setting in settings:
+            value = setting.coerce(self.given.pop(setting.name, setting.default))
+            self._settings[setting.name] = setting
+            with self._declaring():
+                self._node.declare_parameter(setting.name, value, setting.descriptor(value), ignore_override=True)
+
+    def undeclare(self, names: Iterable[str]) -> None:
+        """Forget live parameters that have lost their meaning, as those of an effect that was removed."""
+        for name in names:
+            del self._settings[name]
+            self._node.undeclare_parameter(name)
+
+    def update(self, values: Values) -> None:
+        """Set values from inside the node; `check` and `apply` are not asked."""
+        with self._declaring():
+            self._node.set_parameters_atomically([Parameter(name, value=value) for name, value in values.items()])
+
+    def refuse_unknown(self, tolerated: Callable[[str], bool] = lambda name: False) -> None:
+        """Raise UsageError, with the nearest names, if something was given that nobody declared."""
+        for name in self.given:
+            if not tolerated(name):
+                raise UsageError(unknown_name("parameter", name, self._settings))
+
+    def __getitem__(self, name: str) -> Any:
+        return self._node.get_parameter(name).value
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._settings
+
+    def values(self) -> dict[str, Any]:
+        """All values by name."""
+        return {name: self._node.get_parameter(name).value for name in self._settings}
+
+    @contextmanager
+    def _declaring(self) -> Iterator[None]:
+        before, self._open = self._open, True
+        try:
+            yield
+        finally:
+            self._open = before
+
+    # --- callbacks of rclpy -----------------------------------------------------------------------------------------
+
+    def _whole_numbers(self, parameters: list[Parameter]) -> list[Parameter]:
+        """`mass: 5` where `mass: 5.0` is meant would be refused for its type."""
+        return [self._as_declared(p) for p in parameters]
+
+    def _as_declared(self, parameter: Parameter) -> Parameter:
+        setting = self._settings.get(parameter.name)
+        if setting and type(setting.default) is float and parameter.type_ == Parameter.Type.INTEGER:
+            return Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
+        return parameter
+
+    def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
+        if self._open:
+            return SetParametersResult(successful=True)
+        try:
+            changed = {p.name: self._coerced(p) for p in parameters}
+            self.check({**self.values(), **changed})
+        except UsageError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _coerced(self, parameter: Parameter) -> Any:
+        setting = self._settings.get(parameter.name)
+        return setting.coerce(parameter.value) if setting else parameter.value
+
+    def _take(self, parameters: list[Parameter]) -> None:
+        if not self._open:
+            self.apply({p.name: p.value for p in parameters if p.name in self._settings})

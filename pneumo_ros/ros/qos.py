@@ -1,0 +1,8 @@
+"""How topics are sent and taken: publishers reliable, subscribers content with best effort, keep last."""
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+# A reliable publisher serves reliable and best-effort subscribers alike; a best-effort subscriber hears both kinds.
+PUBLISH = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
+SUBSCRIBE = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
