@@ -1,0 +1,44 @@
+"""Sensor noise, estimated from the recording itself."""
+
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.identify.run import Run
+
+Array = NDArray[np.float64]
+
+_ORDER = 4  # differences: annihilate motion that is cubic over five samples
+_BLOCK = 100  # samples
+
+
+def noise_level(signal: Array) -> float:
+    """Standard deviation of the white noise in a sampled smooth signal (n,), quantisation included.
+
+    Differences of fourth order remove the motion; their variance, taken in short blocks, is that of the noise in all
+    blocks but those with an event (breakaway, impact): the middle half of the blocks by size is averaged. Floors: a
+    signal at rest within its quantisation step q gets the q / sqrt(12) of a uniform error, and no sensor is taken to
+    resolve better than a millionth of what it spans.
+    """
+    differences = np.diff(signal, _ORDER)
+    gain = sum(comb(_ORDER, k) ** 2 for k in range(_ORDER + 1))
+    blocks = differences[: len(differences) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+    variances = np.sort(np.mean(blocks**2, axis=1) if len(blocks) else [np.mean(differences**2)])
+    quarter = len(variances) // 4
+    middle = variances[quarter : len(variances) - quarter]
+    floor = max(resolution(signal) / np.sqrt(12.0), 1e-6 * float(np.ptp(signal)), 1e-12)
+    return float(max(np.sqrt(np.mean(middle) / gain), floor))
+
+
+def resolution(signal: Array) -> float:
+    """Quantisation step of a signal: the smallest difference between its values, 0 when it looks continuous."""
+    levels = np.unique(signal)
+    if len(levels) < 2 or len(levels) > len(signal) // 4:
+        return 0.0
+    return float(np.min(np.diff(levels)))
+
+
+def run_noise(run: Run) -> dict[str, float]:
+    """Noise level of every measured signal of a run, by its report name."""
+    return {name: noise_level(signal) for name, signal in run.signals.items()}

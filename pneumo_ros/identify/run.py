@@ -1,0 +1,99 @@
+"""A recording laid on a uniform time grid, as the integrator and the estimators want it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.records import Recording
+
+Array = NDArray[np.float64]
+
+PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
+_GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording on a grid of n points, `sample_time` apart. Arrays are (n,), SI units, unless said otherwise."""
+
+    name: str
+    sample_time: float  # [s]
+    position: Array
+    pressure_a: Array | None
+    pressure_b: Array | None
+    input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
+    measured: NDArray[np.bool_]  # false inside gaps
+    force_driven: bool
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def time(self) -> Array:
+        """Grid times [s]."""
+        return np.arange(len(self), dtype=np.float64) * np.float64(self.sample_time)
+
+    @property
+    def held(self) -> Array:
+        """(n - 1,) input over each interval, the mean of its parts."""
+        return np.asarray(self.input.reshape(-1, PARTS).mean(axis=1))
+
+    @property
+    def signals(self) -> dict[str, Array]:
+        """The measured signals by their name in reports: position_m, pressure_a_pa and pressure_b_pa."""
+        every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
+        return {name: signal for name, signal in every.items() if signal is not None}
+
+
+def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
+    """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
+
+    `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, or holds no
+    pressures or no input for the kind asked for.
+    """
+    time = recording.time
+    if len(time) < 50:
+        raise DataError(f"{recording.name} holds {len(time)} samples; at least 50 are needed")
+    driven = recording.force_driven if force_driven is None else force_driven
+    _check_input(recording, driven)
+    counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
+    intervals = int(counts.sum())
+    step = float((time[-1] - time[0]) / intervals)
+    grid = time[0] + step * np.arange(intervals + 1)
+    nearest = np.minimum(np.searchsorted(time, grid), len(time) - 1)
+    distance = np.minimum(np.abs(time[nearest] - grid), np.abs(time[np.maximum(nearest - 1, 0)] - grid))
+
+    def lay(signal: Array | None) -> Array | None:
+        return None if signal is None else np.interp(grid, time, signal)
+
+    position = lay(recording.position)
+    assert position is not None
+    cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
+    held = np.interp(cells, time, _array(recording.effort)) if driven else _commands_at(recording, cells)
+    return Run(
+        recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
+        distance < _GAP * step, driven,
+    )  # fmt: skip
+
+
+def _array(signal: Array | None) -> Array:
+    assert signal is not None
+    return signal
+
+
+def _check_input(recording: Recording, force_driven: bool) -> None:
+    if force_driven and recording.effort is None:
+        raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
+    if not force_driven and (recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None):
+        raise DataError(
+            f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
+            "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
+        )
+
+
+def _commands_at(recording: Recording, times: Array) -> Array:
+    """The command in force at each time: the last one recorded before it, the first one before that."""
+    when, value = _array(recording.command_time), _array(recording.command)
+    return value[np.maximum(np.searchsorted(when, times, side="right") - 1, 0)]

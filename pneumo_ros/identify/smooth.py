@@ -1,0 +1,33 @@
+"""Velocity and acceleration from sampled positions, with a stated noise gain."""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_coeffs, savgol_filter
+
+Array = NDArray[np.float64]
+
+
+def smooth(signal: Array, sample_time: float, half_width: float, order: int, derivative: int = 0) -> Array:
+    """Local polynomial of `order` over +-`half_width` [s] (Savitzky and Golay 1964): its `derivative` at every sample.
+
+    signal (n,), returns (n,), in units of the signal per s**derivative. Near the ends the last full window is used.
+    """
+    width = _window(len(signal), sample_time, half_width, order)
+    return np.asarray(savgol_filter(signal, width, min(order, width - 1), deriv=derivative, delta=sample_time))
+
+
+def noise_gain(sample_time: float, half_width: float, order: int, derivative: int = 0) -> float:
+    """Standard deviation of the result of `smooth` over that of white noise in the signal, in 1/s**derivative."""
+    return _gain(_window(10**9, sample_time, half_width, order), sample_time, order, derivative)
+
+
+def _window(samples: int, sample_time: float, half_width: float, order: int) -> int:
+    width = 2 * max(round(half_width / sample_time), order // 2 + 1) + 1
+    return min(width, samples - 1 + samples % 2)
+
+
+@lru_cache(maxsize=64)
+def _gain(width: int, sample_time: float, order: int, derivative: int) -> float:
+    return float(np.linalg.norm(savgol_coeffs(width, order, deriv=derivative, delta=sample_time)))

@@ -1,0 +1,70 @@
+"""Prediction windows: how far the model runs from the measurement within a given horizon."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.identify.run import PARTS, Run
+from pneumo_ros.identify.start import start_states
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Simulated against measured over windows: grid index of each window's start, and errors by signal name.
+
+    errors[name] has shape (windows, samples), model minus measurement in the signal's unit, NaN where nothing was
+    measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
+    """
+
+    start: NDArray[np.int64]
+    sample_time: float
+    errors: dict[str, Array]
+    states: Array  # (windows, samples, states)
+
+
+def window_starts(run: Run, samples: int) -> NDArray[np.int64]:
+    """Grid indices where windows of `samples` begin: side by side, without those that a gap cuts."""
+    starts = np.arange(0, len(run) - samples, samples, dtype=np.int64)
+    whole = [bool(run.measured[s : s + samples + 1].all()) for s in starts]
+    return starts[np.array(whole, dtype=bool)] if len(starts) else starts
+
+
+def predict(model: Model, run: Run, horizon: float) -> Prediction:
+    """Predict a run in windows of `horizon` [s], each from a start estimated around its first sample.
+
+    Raises UsageError when the run holds no such window.
+    """
+    samples = round(horizon / run.sample_time)
+    starts = window_starts(run, samples) if samples >= 2 else np.empty(0, dtype=np.int64)
+    if not len(starts):
+        raise UsageError(
+            f"{run.name} has no window of {horizon:g} s without a gap in its {run.time[-1]:.3g} s; "
+            "give a shorter --horizon"
+        )
+    return _predict_from(model, run, starts, samples)
+
+
+def free_run(model: Model, run: Run) -> Prediction:
+    """Simulate the whole run from its first sample alone; where the state leaves the finite numbers, errors are too."""
+    return _predict_from(model, run, np.zeros(1, dtype=np.int64), len(run) - 1)
+
+
+def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
+    states = model.simulate_lanes(
+        run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
+        sample_time=run.sample_time, parts=PARTS,
+    )  # fmt: skip
+    rows = starts[:, None] + np.arange(1, samples + 1)
+    hidden = np.where(run.measured[rows], 0.0, np.nan)
+    columns = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
+    errors = {
+        name: states[:, :, model.states.index(columns[name])] - signal[rows] + hidden
+        for name, signal in run.signals.items()
+        if columns[name] in model.states
+    }
+    return Prediction(starts, run.sample_time, errors, states)
