@@ -42,17 +42,21 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
         raise
 
 
-@contextmanager
-def whole_folder(path: str | Path) -> Iterator[Path]:
-    """A folder to fill, which becomes `path` when the block ends well and vanishes when it does not.
-
-    UsageError when `path` exists or cannot be made.
-    """
+def check_new_folder(path: str | Path) -> Path:
+    """`path` as a Path; UsageError when it exists or when its folder is missing or cannot be written."""
     target = Path(path)
     if target.exists():
         raise UsageError(f"{target} exists; name another folder, or remove it first: rm -r {target}")
-    if not target.parent.is_dir():
-        raise UsageError(f"cannot make {target}: there is no folder {target.parent}; type: mkdir -p {target.parent}")
+    return check_writable(target)
+
+
+@contextmanager
+def whole_folder(path: str | Path) -> Iterator[Path]:
+    """A folder to make and fill, which becomes `path` when the block ends well and vanishes when it does not.
+
+    UsageError when `path` exists or cannot be made.
+    """
+    target = check_new_folder(path)
     # The folder keeps its name inside: some files in a recording are named after it.
     around = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
     try:

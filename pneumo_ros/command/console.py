@@ -1,6 +1,7 @@
 """What a verb says: results on stdout, messages and progress on stderr, JSON where it is wanted."""
 
 import json
+import logging
 import math
 import sys
 import time
@@ -22,6 +23,13 @@ class Console:
         self.quiet = quiet
         self.json_target = json_target
         self._json_path = Path() if json_target in (None, "-") else check_writable(str(json_target))
+        self._listen()
+
+    def _listen(self) -> None:
+        """Show what the package logs (a kernel being compiled, say) beside the other messages."""
+        logger = logging.getLogger("pneumo_ros")
+        logger.handlers = [logging.StreamHandler(sys.stderr)]
+        logger.setLevel(logging.ERROR if self.quiet else logging.INFO)
 
     def say(self, text: str = "") -> None:
         """A result for a person to read."""
@@ -97,7 +105,7 @@ class Progress:
         percent = int(100 * min(max(fraction, 0.0), 1.0))
         if self.moving:
             self._draw(percent, now)
-        elif percent // 10 > self._shown:
+        elif percent // 10 > self._shown and (self._shown or percent < 100):
             self._shown = percent // 10
             print(f"{self.title}: {10 * self._shown} %", file=self.stream, flush=True)
 

@@ -92,7 +92,8 @@ def read_csv(path: Path) -> Drive:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"cannot read {path}: {error}") from error
+        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
+        raise DataError(f"cannot read {path}: {reason}") from error
     rows: list[tuple[float, float]] = []
     for number, line in enumerate(lines, start=1):
         row = _row(line)
