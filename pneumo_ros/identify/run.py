@@ -33,7 +33,7 @@ class Run:
     @property
     def time(self) -> Array:
         """Grid times [s]."""
-        return np.arange(len(self), dtype=np.float64) * np.float64(self.sample_time)
+        return np.asarray(np.arange(len(self)) * self.sample_time, dtype=np.float64)
 
     @property
     def held(self) -> Array:

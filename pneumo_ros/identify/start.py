@@ -42,7 +42,7 @@ def smoothed(run: Run) -> Smoothed:
 
 
 def first_guess(model: Model, run: Run, at: Index) -> Array:
-    """States (len(at), states): measured ones smoothed, others driven along the motion, bristles by balance of forces."""
+    """States (len(at), states): measured ones smoothed, others driven along, bristles by balance of forces."""
     guess = smoothed(run)
     frame = guess.frame[:, : 2 if model.force_driven else 4]
     rest = model.state()[frame.shape[1] :]

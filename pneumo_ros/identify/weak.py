@@ -5,7 +5,8 @@ Each equation is multiplied by a smooth bump phi(t) = (1 - tau^2)^6 and integrat
     momentum:  (1 / I) int (phi'' M y - phi M v'_model) dt   [N]
     chamber:   (1 / I) int (-phi' L - phi (p'/p + gamma V'/V)_model) dt  p V / (gamma R T)   [kg/s]
 
-with I = int phi and L = ln p + gamma ln V. The chamber's form needs no velocity: the model's p'/p + gamma V'/V is gamma R T q / (p V).
+with I = int phi and L = ln p + gamma ln V. The chamber's form needs no velocity:
+the model's p'/p + gamma V'/V is gamma R T q / (p V).
 """
 
 from dataclasses import dataclass
@@ -97,7 +98,7 @@ def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
 
 
 def _claims(model: Model, run: Run, states: Array) -> Array:
-    """Derivatives (n, states) at every sample; where the input steps, the mean of before and after as integrals want."""
+    """Derivatives (n, states) at every sample; where the input steps, the mean of both sides, as integrals want."""
     held = run.held
     after, before = np.append(held, held[-1]), np.insert(held, 0, held[0])
     return 0.5 * (model.derivatives(states, after, run.time) + model.derivatives(states, before, run.time))
