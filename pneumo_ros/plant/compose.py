@@ -7,8 +7,9 @@ is a Stormer-Verlet step (Hairer, Lubich, Wanner 2006, ch. I.1.4) made exponenti
     2. velocities (states in m/s) take a whole step with the forces at mid step;
     3. all other states take a whole step with the derivatives at mid step and the mean velocity.
 
-It is of second order, time-symmetric for elastic parts (no artificial damping or growth below omega h = 2), and a state
-with der_x = source - rate x moves by the exact solution for constant source and rate: stable for any rate h.
+It is of second order and time-symmetric for elastic parts (no artificial damping or growth below omega h = 2). Where
+der_x = source - rate x, a state moves by the exact solution for constant source and rate; half steps and velocities
+take a rational stand-in (`maths.damped`) that decays likewise. Both are stable for any rate h.
 """
 
 from dataclasses import dataclass

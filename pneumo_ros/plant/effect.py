@@ -11,8 +11,10 @@
 
 What an effect reads are the arguments of `equations` (states, signals, its own parameters, those of others); what it
 writes are the returned names: signals of `signals.py`, `der_x` for each state x it declares, and `rate_x` [1/s] where
-der_x = source - rate_x x, which lets the integrator take that part exactly. An optional `advance` runs once after each
-step and returns states; an optional `caution` returns a sentence when parameters, though allowed, are unwise.
+der_x = source - rate_x x, which lets the integrator take that part exactly. An effect whose force grows with velocity
+returns the slope as `resistance` too, which keeps the step stable however steep it is. An optional `advance` runs once
+after each step and returns states; an optional `caution` returns a sentence when parameters, though allowed, are
+unwise.
 """
 
 import ast

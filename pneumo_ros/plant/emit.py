@@ -133,6 +133,7 @@ def module_text(resolver: "Resolver", parameters: tuple[str, ...], observed: tup
     states = list(resolver.states)
     rates = [s for s in states if f"rate_{s}" in resolver.writers]
     book.helper(maths.relaxation, "the integrator")
+    book.helper(maths.damped, "the integrator")
     derivatives = _derivatives(resolver, book, states, rates, names)
     after = _after_step(resolver, book, states, names)
     observation = _observation(resolver, book, states, observed, names)
@@ -185,10 +186,12 @@ def _step(resolver: "Resolver", states: list[str], rates: list[str], names: list
 
     lines = ["half = 0.5 * h", "middle = t + half", evaluate(dict.fromkeys(states, ""), "t")]
     for s in states:
-        weight = f"half * relaxation(r_{s} * half)" if s in rates else "half"
+        weight = f"half * damped(r_{s} * half)" if s in rates else "half"
         lines.append(f"{s}_m = {s} + {weight} * d_{s}")
     lines.append(evaluate(dict.fromkeys(states, "_m"), "middle"))
-    lines += [f"{s}_n = {s} + h * d_{s}" for s in velocities]
+    for s in velocities:
+        implicit = f"h * damped(r_{s} * h) * (d_{s} + r_{s} * ({s}_m - {s}))"
+        lines.append(f"{s}_n = {s} + " + (implicit if s in rates else f"h * d_{s}"))
     lines += [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
     lines.append(evaluate(dict.fromkeys(states, "_m"), "middle"))
     for s in others:

@@ -51,11 +51,14 @@ _TABLE = (
     Signal("drive", "single", "N", "U", "force that drives the piston: of the chambers, or the input itself"),
     Signal("force", "sum", "N", "0.0", "load force on the piston, against positive velocity"),
     Signal("friction", "sum", "N", "0.0", "friction force on the piston, against positive velocity"),
+    Signal("resistance", "sum", "N s/m", "0.0", "slope of force and friction over velocity, for stability alone"),
     Signal("added_mass", "sum", "kg", "0.0", "moves with the piston"),
     Signal("friction_scale", "product", "1", "1.0", "multiplies Coulomb and static friction"),
     Signal("friction_rise", "sum", "N", "0.0", "added to Coulomb and static friction"),
     Signal("static_rise", "sum", "N", "0.0", "added to static friction alone"),
-    Signal("stribeck", "single", "1", "exp(-(v / stribeck_velocity) * (v / stribeck_velocity))", "Stribeck decay"),
+    Signal(
+        "stribeck", "single", "1", "exp(-(v * v) * (1.0 / (stribeck_velocity * stribeck_velocity)))", "Stribeck decay"
+    ),
     # sensors
     Signal("y_measured", "single", "m", "y", "what the position sensor reads"),
     Signal("p_a_measured", "single", "Pa", "p_a", "what the pressure sensor of chamber a reads"),

@@ -16,7 +16,9 @@ class Piston(Effect):
 
     source = "Newton's second law; paper Eqs. 1-2"
 
-    def equations(v, drive, force, friction, added_mass, mass):
+    def equations(v, drive, force, friction, resistance, added_mass, mass):
+        mobility = 1.0 / (mass + added_mass)
         der_y = v
-        der_v = (drive - force - friction) / (mass + added_mass)
-        return der_y, der_v
+        der_v = mobility * (drive - force - friction)
+        rate_v = mobility * resistance
+        return der_y, der_v, rate_v

@@ -6,9 +6,9 @@ from pneumo_ros.plant.effect import Effect, Parameter, State, pi, sin, sqrt
 class LugreFriction(Effect):
     """Elasto-plastic LuGre friction, Eqs. 10-14: F = sigma_0 z + sigma_1 z', z' = v - alpha(z, v) sigma_0 |v| z / g(v).
 
-    Below the breakaway deflection z_ba = breakaway_ratio z_max the contact is purely elastic (alpha = 0), hence no
-    creep under small vibrating loads. The plastic term is linear in z, so it is returned as a rate as well: the
-    integrator takes it exactly at any speed.
+    Below the breakaway deflection z_ba = breakaway_ratio z_max, z_max = g(v) / sigma_0, the contact is purely elastic
+    (alpha = 0), hence no creep under small vibrating loads. The plastic term is linear in z, so it is returned as a
+    rate as well: the integrator takes it exactly at any speed.
     """
 
     static_friction = Parameter(100.0, "N", "static friction force F_s", low=0.0, high=1e5)
@@ -34,18 +34,16 @@ class LugreFriction(Effect):
         F_c = friction_scale * coulomb_friction + friction_rise
         F_s = friction_scale * static_friction + friction_rise + static_rise
         g = max(F_c + (F_s - F_c) * stribeck, 1e-6 * coulomb_friction)
-        z_max = g / bristle_stiffness
-        z_ba = breakaway_ratio * z_max
-        if v * z <= 0.0 or abs(z) <= z_ba:
-            alpha = 0.0
-        elif abs(z) >= z_max:
-            alpha = 1.0
-        else:
-            alpha = 0.5 + 0.5 * sin(pi * (abs(z) - 0.5 * (z_max + z_ba)) / (z_max - z_ba))
-        rate_z = alpha * abs(v) / z_max
+        share = bristle_stiffness * abs(z) / g  # of the largest deflection, |z| / z_max
+        rate_z = bristle_stiffness * abs(v) / g  # times alpha:
+        if v * z <= 0.0 or share <= breakaway_ratio:
+            rate_z = 0.0
+        elif share < 1.0:
+            rate_z *= 0.5 + 0.5 * sin(pi / (1.0 - breakaway_ratio) * (share - 0.5 * (1.0 + breakaway_ratio)))
         der_z = v - rate_z * z
         friction = bristle_stiffness * z + bristle_damping * der_z
-        return friction, der_z, rate_z
+        resistance = bristle_damping
+        return friction, resistance, der_z, rate_z
 
     def advance(z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness):
         # |z| <= F_s / sigma_0 is an invariant of the exact equation; one step at high speed may overshoot it

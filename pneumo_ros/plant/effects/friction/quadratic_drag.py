@@ -12,5 +12,6 @@ class QuadraticDrag(Effect):
     signature = "residual force grows with the square of velocity, odd"
 
     def equations(v, coefficient):
-        friction = coefficient * v * abs(v)
-        return friction
+        resistance = coefficient * abs(v)
+        friction = resistance * v
+        return friction, resistance

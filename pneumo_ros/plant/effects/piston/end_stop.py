@@ -21,4 +21,5 @@ class EndStop(Effect):
         push_back = stiffness * over * max(1.0 + damping * v, 0.0)
         push_out = stiffness * under * max(1.0 - damping * v, 0.0)
         force = push_back - push_out
-        return force
+        resistance = stiffness * damping * (over + under)
+        return force, resistance
