@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
+from pneumo_ros.errors import DataError
+
 NUMBERS = {
     "bool": "?", "byte": "i1", "char": "u1", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4",
     "uint32": "u4", "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8",
@@ -43,7 +45,12 @@ class Leaf(NamedTuple):
 
 
 def leaves(store: Typestore, message_type: str, prefix: str = "") -> list[Leaf]:
-    """Fields of `message_type` in the order of the definition, those of nested messages in place."""
+    """Fields of `message_type` in the order of the definition, those of nested messages in place.
+
+    Raises DataError when the definition names a type that is not defined.
+    """
+    if message_type not in store.fielddefs:
+        raise DataError(f"A message definition uses the type {message_type} and does not define it.")
     found: list[Leaf] = []
     definition: list[tuple[str, tuple[Nodetype, Any]]] = store.fielddefs[message_type][1]  # type: ignore[assignment]
     for name, (node, content) in definition:  # rosbags' type of a definition is too wide to be followed

@@ -11,7 +11,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
-from pneumo_ros.errors import DataError
+from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Channel
 
@@ -58,10 +58,10 @@ def channel_types(channel: Channel) -> Typestore:
 
 
 def definition_of(message_type: str) -> tuple[str, str]:
-    """Text (ros2msg) and RIHS01 hash of a standard type, as a recording carries them. Raises DataError if unknown."""
+    """Text (ros2msg) and RIHS01 hash of a standard type, as a recording carries them. Raises UsageError if unknown."""
     store = standard_types()
     if message_type not in store.fielddefs:
-        raise DataError(unknown_name("message type", message_type, store.fielddefs))
+        raise UsageError(unknown_name("message type", message_type, store.fielddefs))
     text, _ = store.generate_msgdef(message_type, ros_version=2)
     return text, store.hash_rihs01(message_type)
 

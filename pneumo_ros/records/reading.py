@@ -37,6 +37,8 @@ class _Reader:
         bag = Bag(path)
         found, types = collect(bag, _is_signal)
         self.warnings = list(bag.warnings)
+        if not types:
+            raise DataError(" ".join([f"{path} holds no messages.", *self.warnings]))
         self.namespace = choose_namespace(path, types, namespace)
         check_types(types, self.namespace)
         self.topics = {topic: data for topic, data in found.items() if _name(topic, self.namespace)}
