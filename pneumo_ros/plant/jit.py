@@ -3,7 +3,9 @@
 With NUMBA_DISABLE_JIT=1 the same module runs in pure Python, breakpoints and all.
 """
 
+import importlib
 import os
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -33,9 +35,25 @@ else:
         ) from error
 
     # error_model: a division never branches to an exception, or no loop would vectorise. No fast-math: compiled and
-    # interpreted results are equal to the bit.
-    inline = numba.njit(forceinline=True, error_model="numpy")
-    entry = numba.njit(cache=True, nogil=True, error_model="numpy")
+    # interpreted results are equal to the bit. The wrappers would serve callers from Python and C; leaving them out
+    # saves a third of the time to compile.
+    njit: Any = numba.njit  # its stubs do not know all its options
+    inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    entry = njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
+
+    def _load_without_scipy() -> None:
+        """Load what numba loads at its first call, but for scipy.linalg: no kernel needs it, and it takes a quarter."""
+        linalg: Any = importlib.import_module("numba.np.linalg")
+        look_for_blas = linalg.ensure_blas
+        linalg.ensure_blas = lambda: None
+        try:
+            arrays = importlib.import_module("numba.np.arraymath")
+        finally:
+            linalg.ensure_blas = look_for_blas
+        arrays.ensure_blas = look_for_blas
+
+    if "numba.np.arraymath" not in sys.modules:
+        _load_without_scipy()
 
     _I64, _F64 = ir.IntType(64), ir.DoubleType()
     _EXPONENT_ONE, _MANTISSA_BITS = 0x3FF0000000000000, 0x000FFFFFFFFFFFFF

@@ -52,7 +52,8 @@ def _write_once(path: Path, text: str) -> None:
 @lru_cache(maxsize=64)
 def load_kernel(text: str) -> ModuleType:
     """Import the module whose text is given, from the kernel folder; it compiles at first use and is cached on disk."""
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    how_compiled = Path(__file__).with_name("jit.py").read_text(encoding="utf-8")
+    digest = hashlib.sha256((text + how_compiled).encode()).hexdigest()[:16]
     name = f"pneumo_kernel_{digest}"
     path = _writable_folder() / f"{name}.py"
     _write_once(path, text)

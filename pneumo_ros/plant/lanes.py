@@ -1,6 +1,5 @@
 """Packing of independent lanes into the blocks that the vectorised kernel advances together."""
 
-from concurrent.futures import ThreadPoolExecutor
 from types import ModuleType
 from typing import Any
 
@@ -40,6 +39,8 @@ def run_lanes(
     if len(shares) == 1:
         part(shares[0])
     else:
+        from concurrent.futures import ThreadPoolExecutor  # slow to import
+
         with ThreadPoolExecutor(len(shares)) as pool:
             list(pool.map(part, shares))
     return np.asarray(out.reshape(len(x), samples, n, width).transpose(0, 3, 1, 2).reshape(-1, samples, n)[:count])

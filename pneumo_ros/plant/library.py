@@ -9,7 +9,6 @@ import importlib.util
 import sys
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
@@ -70,6 +69,8 @@ def effects_of_file(path: str) -> Mapping[str, type[Effect]]:
 
 @lru_cache(maxsize=1)
 def _installed() -> dict[str, type[Effect]]:
+    from importlib.metadata import entry_points  # slow to import, and seldom needed
+
     found = {}
     for point in entry_points(group="pneumo_ros.effects"):
         effect = point.load()
