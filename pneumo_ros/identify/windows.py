@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.run import PARTS, Run
+from pneumo_ros.identify.segments import side_by_side
 from pneumo_ros.identify.start import start_states
 from pneumo_ros.plant import Model
 
@@ -27,20 +28,13 @@ class Prediction:
     states: Array  # (windows, samples, states)
 
 
-def window_starts(run: Run, samples: int) -> NDArray[np.int64]:
-    """Grid indices where windows of `samples` begin: side by side, without those that a gap cuts."""
-    starts = np.arange(0, len(run) - samples, samples, dtype=np.int64)
-    whole = [bool(run.measured[s : s + samples + 1].all()) for s in starts]
-    return starts[np.array(whole, dtype=bool)] if len(starts) else starts
-
-
 def predict(model: Model, run: Run, horizon: float) -> Prediction:
     """Predict a run in windows of `horizon` [s], each from a start estimated around its first sample.
 
     Raises UsageError when the run holds no such window.
     """
     samples = round(horizon / run.sample_time)
-    starts = window_starts(run, samples) if samples >= 2 else np.empty(0, dtype=np.int64)
+    starts = side_by_side(run, samples) if samples >= 2 else np.empty(0, dtype=np.int64)
     if not len(starts):
         raise UsageError(
             f"{run.name} has no window of {horizon:g} s without a gap in its {run.time[-1]:.3g} s; "

@@ -1,0 +1,82 @@
+"""First guesses of the state along a recording, before any simulation is fitted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.identify.noise import run_noise
+from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.smooth import noise_gain, smooth
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+HALF_WIDTH = 0.012  # s, of the local polynomials
+_FORCE = 1.0  # N, how far the balance of forces may be off
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """First guesses along a whole run: measured states (n, 2 or 4) with smoothed velocity, and acceleration (n,)."""
+
+    frame: Array
+    acceleration: Array
+
+
+def smoothed(run: Run) -> Smoothed:
+    """Position, velocity, pressures and acceleration by local polynomials over +-12 ms."""
+    dt, y = run.sample_time, run.position
+    columns = [smooth(y, dt, HALF_WIDTH, 3), smooth(y, dt, HALF_WIDTH, 3, 1)]
+    columns += [smooth(p, dt, HALF_WIDTH, 2) for p in (run.pressure_a, run.pressure_b) if p is not None]
+    return Smoothed(np.stack(columns, axis=1), smooth(y, dt, 1.5 * HALF_WIDTH, 3, 2))
+
+
+def first_guess(model: Model, run: Run, at: Index) -> Array:
+    """States (len(at), states): measured ones smoothed, others driven along, bristles by balance of forces."""
+    guess = smoothed(run)
+    frame = guess.frame[:, : 2 if model.force_driven else 4]
+    rest = model.state()[frame.shape[1] :]
+    states, _ = model.follow(frame, run.held, rest, sample_time=run.sample_time)
+    chosen: Array = states[at]
+    if "z" in model.states:
+        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], guess.acceleration[at])
+    return chosen
+
+
+def _balance(model: Model, states: Array, held: Array, acceleration: Array) -> None:
+    """Set the bristle deflection so that the model's acceleration is the measured one (two secant steps)."""
+    z, v = model.states.index("z"), model.states.index("v")
+    probe = 1e-6
+    for _ in range(2):
+        shifted = states.copy()
+        shifted[:, z] += probe
+        here, there = (model.derivatives(x, held)[:, v] for x in (states, shifted))
+        slope = (there - here) / probe
+        states[:, z] += np.where(slope != 0.0, (acceleration - here) / np.where(slope == 0.0, 1.0, slope), 0.0)
+    limit = _deflection_limit(model)
+    states[:, z] = np.clip(states[:, z], -limit, limit)
+
+
+def _deflection_limit(model: Model) -> float:
+    section = "lugre_friction"
+    return model[f"{section}.static_friction"] / model[f"{section}.bristle_stiffness"]
+
+
+def guess_scale(model: Model, run: Run) -> Array:
+    """Standard deviation (states,) of each state about its first guess."""
+    noise = run_noise(run)
+    scale = np.array([max(abs(s), 1.0) * 0.1 for s in model.state()])
+    for name, column in measured_columns(model).items():
+        scale[column] = 3.0 * noise[name]
+    scale[1] = 3.0 * noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1) + 1e-4
+    if "z" in model.states:
+        scale[model.states.index("z")] = _FORCE / model["lugre_friction.bristle_stiffness"]
+    return scale
+
+
+def measured_columns(model: Model) -> dict[str, int]:
+    """Which state each measured signal shows, by report name; pressures only where the model has chambers."""
+    shown = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
+    return {name: model.states.index(state) for name, state in shown.items() if state in model.states}

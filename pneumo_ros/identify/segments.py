@@ -1,0 +1,115 @@
+"""Many short simulations against measurements: segments of runs, whitened, as one batch of lanes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.identify.guess import first_guess, guess_scale, measured_columns
+from pneumo_ros.identify.noise import run_noise
+from pneumo_ros.identify.run import PARTS, Run
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+PROBE = 1e-2  # scales: step of finite differences
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Segments of equal length; arrays hold one row per segment.
+
+    first: index of each segment's first entry in `voltage`, the inputs of all runs one after another; measured and
+    weight (segments, samples, signals), weight = 1 / noise, or 0 where nothing was measured; guess and scale
+    (segments, states): initial states and their prior deviations; columns: the states that the signals show.
+    """
+
+    sample_time: float
+    samples: int
+    voltage: Array
+    first: Index
+    measured: Array
+    weight: Array
+    guess: Array
+    scale: Array
+    columns: tuple[int, ...]
+    run: Index  # which run each segment is from
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def probes(self, states: Array) -> Array:
+        """States (states * segments, states), each entry in turn moved by `PROBE` of its scale: lanes of a Jacobian."""
+        moved = np.tile(states, (states.shape[1], 1, 1))
+        for j in range(states.shape[1]):
+            moved[j, :, j] += PROBE * self.scale[:, j]
+        return moved.reshape(-1, states.shape[1])
+
+    def from_guess(self, states: Array) -> Array:
+        """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states)."""
+        return np.asarray((states.reshape(-1, *self.guess.shape) - self.guess) / self.scale)
+
+    def simulate(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
+        """(lanes, samples, states) from initial states (lanes, states), lanes a multiple of the segments."""
+        return model.simulate_lanes(
+            self.voltage, states, parameters, samples=self.samples, sample_time=self.sample_time, parts=PARTS,
+            first=np.tile(self.first, len(states) // len(self)), threads=threads,
+        )  # fmt: skip
+
+    def residuals(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
+        """Whitened errors (copies, segments, samples * signals); predictions that left the finite count as very wrong.
+
+        states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
+        """
+        copies = len(states) // len(self)
+        predicted = self.simulate(model, states, parameters, threads)[:, :, self.columns]
+        predicted = predicted.reshape(copies, len(self), self.samples, -1)
+        error = ((predicted - self.measured) * self.weight).reshape(copies, len(self), -1)
+        return np.asarray(np.nan_to_num(error, nan=1e6, posinf=1e6, neginf=-1e6))
+
+
+def cut(model: Model, runs: Sequence[Run], duration: float) -> Segments:
+    """Cut runs into segments of `duration` [s], side by side and without gaps; UsageError when sample times differ."""
+    samples = max(round(duration / runs[0].sample_time), 2) if runs else 2
+    return cut_at(model, runs, [side_by_side(run, samples) for run in runs], samples)
+
+
+def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: int) -> Segments:
+    """Segments of `samples` that begin at the given grid points of each run."""
+    dt = runs[0].sample_time if runs else 1e-3
+    for run in runs:
+        if abs(run.sample_time / dt - 1.0) > 1e-3:
+            raise UsageError(
+                f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; lay them on one grid"
+            )
+    names = measured_columns(model)
+    offsets = np.cumsum([0, *(len(run.input) for run in runs)])
+    measured, weight = [], []
+    for run, begin in zip(runs, starts, strict=True):
+        rows = begin[:, None] + np.arange(1, samples + 1)
+        noise = run_noise(run)
+        measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
+        weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
+    counts = [len(begin) for begin in starts]
+    return Segments(
+        sample_time=dt,
+        samples=samples,
+        voltage=np.concatenate([run.input for run in runs]),
+        first=np.concatenate([b * PARTS + o for b, o in zip(starts, offsets[:-1], strict=True)]).astype(np.int64),
+        measured=np.concatenate(measured),
+        weight=np.concatenate(weight),
+        guess=np.concatenate([first_guess(model, run, begin) for run, begin in zip(runs, starts, strict=True)]),
+        scale=np.repeat([guess_scale(model, run) for run in runs], counts, axis=0),
+        columns=tuple(names.values()),
+        run=np.repeat(np.arange(len(runs)), counts),
+    )
+
+
+def side_by_side(run: Run, samples: int) -> Index:
+    """Grid points where segments of `samples` begin: side by side, without those that a gap cuts."""
+    starts = np.arange(0, len(run) - samples, samples, dtype=np.int64)
+    whole = np.array([bool(run.measured[s : s + samples + 1].all()) for s in starts], dtype=bool)
+    return starts[whole] if len(starts) else starts
