@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from rig import oracle
+from rig import axis, loop, oracle
+from rig.machine import SMOOTH, WORN, Machine, worn
 
 LONG = {"stroke": 100.0, "volume_a": 5.1e-3, "volume_b": 4.0e-3}  # room to settle: the steady state knows no volumes
 STEADY = [  # voltage [V], rod force on, speed [m/s], pressures [Pa]
@@ -30,9 +31,9 @@ def test_oracle_slides_with_the_bristle_at_50_um():
 
 
 def test_oracle_air_spring_has_345_newtons_per_metre():
-    axis = oracle.Axis({})
+    machine = axis.Axis({})
     invariants = np.array([4e5, (4.1e-4 * 4e5 - 11.0) / 3.0e-4])
-    force = [axis.drive(*axis.pressures(y, *invariants)) for y in (-1e-4, 1e-4)]
+    force = [machine.drive(*machine.pressures(y, *invariants)) for y in (-1e-4, 1e-4)]
     assert (force[0] - force[1]) / 2e-4 == pytest.approx(345.0, rel=2e-3)
 
 
@@ -70,3 +71,54 @@ def test_oracle_refuses_names_it_does_not_know():
         oracle.simulate({"masss": 5.0}, np.zeros(2), {}, 1e-3)
     with pytest.raises(KeyError, match="pressure"):
         oracle.simulate({}, np.zeros(2), {"pressure": 5.0}, 1e-3)
+
+
+BASE = Machine()
+
+
+def fixed_step(voltage, step=loop.STEP, machine=BASE):
+    start = loop.rest(machine, 0.1, 3e5)
+    return loop.readings(machine, loop.run(machine, SMOOTH, start, np.append(voltage, 0.0), step=step)[0])
+
+
+def test_two_derivations_and_two_integrators_agree():
+    """Energy balance with masses at 20 us against adiabatic invariants to ten digits."""
+    x = fixed_step(MANOEUVRE)
+    exact = oracle.simulate({}, MANOEUVRE, dict(zip(oracle.COLUMNS, x[0], strict=True)), 1e-3, 1e-11)
+    assert np.all(np.abs(x[1:] - exact).max(axis=0) < [1e-10, 1e-8, 1e-4, 1e-4, 1e-11])
+
+
+def test_they_agree_at_the_end_of_the_stroke():
+    machine = Machine(half_stroke=0.105)
+    x = fixed_step(MANOEUVRE, machine=machine)
+    start = dict(zip(oracle.COLUMNS, x[0], strict=True))
+    exact = oracle.simulate({"stroke": 0.21}, MANOEUVRE, start, 1e-3, 1e-11)
+    assert x[:, 0].max() > 0.105
+    assert np.all(np.abs(x[1:] - exact).max(axis=0) < [1e-7, 1e-4, 1.0, 1.0, 1e-7])
+
+
+def test_they_agree_on_a_worn_machine():
+    machine = worn(Machine(), np.random.default_rng(5))
+    x = fixed_step(MANOEUVRE, machine=machine)
+    names = {
+        "right_limit": "dead_right",
+        "left_limit": "dead_left",
+        "voltage_gain": "gain",
+        "filling_coefficient": "fill",
+        "exhaust_coefficient": "exhaust",
+        "static_friction": "static",
+        "coulomb_friction": "coulomb",
+        "stribeck_velocity": "stribeck",
+        "bristle_stiffness": "bristle",
+        "bristle_damping": "bristle_damping",
+        "drag_coefficient": "drag",
+    }
+    parameters = {theirs: getattr(machine, ours) for theirs, ours in names.items()}
+    exact = oracle.simulate(parameters, MANOEUVRE, dict(zip(oracle.COLUMNS, x[0], strict=True)), 1e-3, 1e-10)
+    assert set(names.values()) == set(WORN)
+    assert np.all(np.abs(x[1:] - exact).max(axis=0) < [1e-9, 1e-7, 1e-3, 1e-3, 1e-10])
+
+
+def test_the_fixed_step_is_fine_enough():
+    difference = fixed_step(MANOEUVRE) - fixed_step(MANOEUVRE, 5e-6)
+    assert np.all(np.abs(difference).max(axis=0) < [1e-10, 1e-8, 1e-4, 1e-4, 1e-11])

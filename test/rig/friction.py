@@ -1,0 +1,68 @@
+"""Friction: the level a bristle can bear, its yielding, and the film's drag."""
+
+from math import exp, pi, sin, tanh
+
+from numba import njit
+from numpy import ndarray
+
+from .machine import TEXTURE_SPACING, TEXTURE_START, Machine
+
+
+@njit
+def between(table: ndarray, at: float) -> float:
+    """Linear interpolation of a table at the fractional index `at`, ends held."""
+    if at <= 0.0:
+        return table[0]
+    last = len(table) - 1
+    if at >= last:
+        return table[last]
+    i = int(at)
+    return table[i] + (at - i) * (table[i + 1] - table[i])
+
+
+@njit
+def level(m: Machine, y: float, v: float, load: float, p_a: float, p_b: float, age: float, t: float) -> float:
+    """Highest steady force of the bristle g [N]; `load` is the bristle's share of static friction, signed."""
+    static = m.static
+    if m.rest_rise != 0.0:  # Kato's law of static friction over the time at rest
+        static += m.rest_rise * (1.0 - exp(-((age / m.rest_time) ** m.rest_power)))
+    g = m.coulomb + (static - m.coulomb) * exp(-(abs(v / m.stribeck) ** m.stribeck_power))
+    if m.retract_excess != 0.0:  # the direction is that of the sheared bristle, not of the velocity
+        g *= 1.0 + m.retract_excess * 0.5 * (1.0 - tanh(20.0 * load))
+    if m.spot_height != 0.0:
+        g *= 1.0 + m.spot_height * exp(-0.5 * ((y - m.spot_centre) / m.spot_width) ** 2)
+    if m.bow != 0.0:
+        g *= 1.0 + m.bow * (y / 0.5) ** 2
+    if m.warm_share != 0.0:
+        cold = m.warm_split * exp(-t / m.warm_fast) + (1.0 - m.warm_split) * exp(-t / m.warm_slow)
+        g *= 1.0 - m.warm_share * (1.0 - cold)
+    if m.seal != 0.0:
+        gauge_a, gauge_b = max(p_a - m.atmosphere, 1.0), max(p_b - m.atmosphere, 1.0)
+        scale = 0.5 * m.seal * 3e5 ** (1.0 - m.seal_power)
+        g += scale * (gauge_a**m.seal_power + gauge_b**m.seal_power)
+    return g
+
+
+@njit
+def texture(table: ndarray, y: float) -> float:
+    """Friction texture at position y [N]."""
+    return between(table, (y - TEXTURE_START) / TEXTURE_SPACING)
+
+
+@njit
+def yielded(m: Machine, v: float, deflection: float, share: float) -> float:
+    """alpha: how much of the motion is plastic, by the bristle's share of its highest force."""
+    share = abs(share)
+    if v * deflection < 0.0 or share <= m.elastic_share:
+        return 0.0
+    if share >= 1.0:
+        return 1.0
+    middle, width = 0.5 * (1.0 + m.elastic_share), 1.0 - m.elastic_share
+    return 0.5 + 0.5 * sin(pi * (share - middle) / width)
+
+
+@njit
+def film(m: Machine, v: float) -> float:
+    """Drag of the film [N]: the base model's square, and the viscous part, by the direction."""
+    viscous = m.viscous_out * max(v, 0.0) + m.viscous_in * min(v, 0.0)
+    return viscous + m.drag * v * abs(v)

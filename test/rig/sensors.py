@@ -1,0 +1,84 @@
+"""What the sensors and the logger make of the truth."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .loop import SAMPLE, readings
+from .machine import Machine
+
+POSITION_NOISE, POSITION_STEP = 5e-6, 1e-5  # m
+PRESSURE_NOISE, PRESSURE_RANGE = 300.0, 1e6  # Pa
+PRESSURE_STEP = PRESSURE_RANGE / 2**16
+CLOCK_JITTER = 10e-6  # s
+
+
+class Run(NamedTuple):
+    """One run as recorded: arrays (n,), and the truth behind it."""
+
+    name: str
+    stamps: np.ndarray  # header stamps, ns after the start
+    log_times: np.ndarray  # when the logger got the messages, ns
+    position: np.ndarray  # m
+    pressure_a: np.ndarray  # Pa abs
+    pressure_b: np.ndarray
+    voltage: np.ndarray  # V held over each sample
+    command_index: np.ndarray  # samples at which the command was sent: at changes, and at least every 100 ms
+    truth: np.ndarray  # (n, 5): y, v, p_a, p_b, z at the sampling instants
+
+
+def position_noise(rng: np.random.Generator, n: int) -> np.ndarray:
+    """Noise of the encoder before it is rounded [m]."""
+    return rng.normal(0.0, POSITION_NOISE, n)
+
+
+def _delayed(m: Machine, truth: np.ndarray) -> np.ndarray:
+    """Position one sensor delay ago, by the cubic through positions and velocities of neighbouring samples."""
+    back = np.arange(len(truth)) - m.position_delay / SAMPLE
+    left = np.clip(np.floor(back).astype(int), 0, len(truth) - 2)
+    s = np.clip(back - left, 0.0, 1.0)
+    (y0, v0), (y1, v1) = truth[left, :2].T, truth[left + 1, :2].T
+    rise = y1 - y0
+    return y0 + s * (rise + (1.0 - s) * ((1.0 - s) * (v0 * SAMPLE - rise) - s * (v1 * SAMPLE - rise)))
+
+
+def _loose(m: Machine, position: np.ndarray) -> np.ndarray:
+    """What an encoder shows that is dragged along through a dead band."""
+    shown, follower = np.empty_like(position), position[0]
+    for k, y in enumerate(position):
+        follower = min(max(follower, y - m.encoder_play), y + m.encoder_play)
+        shown[k] = follower
+    return shown
+
+
+def _pressure(rng: np.random.Generator, p: np.ndarray, offset: float, gain: float) -> np.ndarray:
+    volts = (1.0 + gain) * p + offset + rng.normal(0.0, PRESSURE_NOISE, len(p))
+    return np.clip(np.round(volts / PRESSURE_STEP), 0, 2**16 - 1) * PRESSURE_STEP
+
+
+def record(
+    name: str, m: Machine, states: np.ndarray, voltage: np.ndarray, noise: np.ndarray, rng: np.random.Generator
+) -> Run:
+    """The run as it is recorded, of states (n, states) at the sampling instants and voltage (n,) held after each.
+
+    `noise` (n,) [m] is the encoder's, which a position loop has seen already. The samples are taken on the millisecond;
+    it is their stamps that jitter.
+    """
+    n, truth = len(states), readings(m, states)
+    position = _delayed(m, truth) if m.position_delay > 0.0 else truth[:, 0]
+    position = _loose(m, position) if m.encoder_play > 0.0 else position
+    nominal = np.arange(n) * round(SAMPLE * 1e9)
+    stamps = nominal + np.round(rng.normal(0.0, CLOCK_JITTER, n) * 1e9).astype(np.int64)
+    log_times = nominal + np.round(2e4 + rng.gamma(3.0, 1.7e4, n)).astype(np.int64)
+    changed = np.concatenate(([True], np.diff(voltage) != 0.0))
+    return Run(
+        name=name,
+        stamps=stamps,
+        log_times=log_times,
+        position=np.round((position + noise) / POSITION_STEP) * POSITION_STEP,
+        pressure_a=_pressure(rng, truth[:, 2], m.offset_a, m.gain_a),
+        pressure_b=_pressure(rng, truth[:, 3], m.offset_b, m.gain_b),
+        voltage=voltage,
+        command_index=np.flatnonzero(changed | (np.arange(n) % 100 == 0)),
+        truth=truth,
+    )
