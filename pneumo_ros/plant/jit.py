@@ -3,6 +3,7 @@
 With NUMBA_DISABLE_JIT=1 the same module runs in pure Python, breakpoints and all.
 """
 
+import contextlib
 import importlib
 import os
 import sys
@@ -47,13 +48,14 @@ else:
         look_for_blas = linalg.ensure_blas
         linalg.ensure_blas = lambda: None
         try:
-            arrays = importlib.import_module("numba.np.arraymath")
+            arrays: Any = importlib.import_module("numba.np.arraymath")
         finally:
             linalg.ensure_blas = look_for_blas
         arrays.ensure_blas = look_for_blas
 
     if "numba.np.arraymath" not in sys.modules:
-        _load_without_scipy()
+        with contextlib.suppress(ImportError, AttributeError):  # a numba that does it otherwise only starts later
+            _load_without_scipy()
 
     _I64, _F64 = ir.IntType(64), ir.DoubleType()
     _EXPONENT_ONE, _MANTISSA_BITS = 0x3FF0000000000000, 0x000FFFFFFFFFFFFF
