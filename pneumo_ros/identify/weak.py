@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.identify.guess import smoothed
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.smooth import smooth
-from pneumo_ros.identify.guess import smoothed
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]

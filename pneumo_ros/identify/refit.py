@@ -1,0 +1,229 @@
+"""Refit of a whole model to recordings by multiple shooting (Bock 1983).
+
+Every run is cut into segments whose initial states are free; each segment is simulated from its own start, and all
+starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. The
+starts are eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all
+perturbed simulations of one iteration run as lanes.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import DataError, NumericalError, UsageError
+from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.segments import PROBE, Segments, cut
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+SEGMENT = 0.5  # s
+HUBER = 4.0  # noise deviations: beyond, errors count linearly
+PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
+_ITERATIONS, _ENOUGH = 25, 1e-4
+_RESAMPLES = 400
+
+# What a scale, a ruler or a table tells better than a motion: fixed unless asked for.
+FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
+FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A refitted parameter: value, standard deviation and 95 % interval in its unit, infinite when not determined."""
+
+    value: float
+    std: float
+    low: float
+    high: float
+    before: float
+    prior: float  # standard deviation of the prior
+
+    @property
+    def determined(self) -> bool:
+        """Whether the data say more than was known before: the deviation is below half the prior's."""
+        return self.std < 0.5 * self.prior
+
+
+@dataclass(frozen=True)
+class Refit:
+    """The refitted model, an estimate per free parameter, their correlation, and the course of the cost."""
+
+    model: Model
+    estimates: dict[str, Estimate]
+    correlation: Array  # (free, free)
+    costs: tuple[float, ...]
+
+
+def default_free(model: Model) -> tuple[str, ...]:
+    """Parameters a refit lets move: all but mass, geometry, gas, end stops and what presliding alone shows."""
+    return tuple(
+        name for name in model.parameters if name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED
+    )
+
+
+def refit(
+    model: Model,
+    runs: Sequence[Run],
+    *,
+    free: Sequence[str] | None = None,
+    priors: Mapping[str, float] | None = None,
+    segment: float = SEGMENT,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Refit:
+    """Refit `free` parameters (default `default_free`) of a model to all runs together.
+
+    `priors` maps dotted names to standard deviations in the parameter's unit (default 5 % of the value, or of the
+    parameter's default where the value is 0). `segment` [s] is the length of the shooting segments. Raises UsageError
+    for unknown names, DataError when no run holds a segment, NumericalError when no step lowers the cost at all.
+    """
+    names = default_free(model) if free is None else tuple(free)
+    start = np.array([model[name] for name in names])
+    known = [
+        (priors or {}).get(name, PRIOR * max(abs(model[name]), abs(model.specification(name).default)))
+        for name in names
+    ]
+    prior = np.array(known)
+    if not names or not (prior > 0.0).all():
+        raise UsageError("a refit needs at least one free parameter, and priors above zero")
+    problem = _Problem(model, names, prior, cut(model, runs, segment), threads)
+    theta, costs = problem.solve(progress or (lambda share, text: None))
+    return problem.result(theta, start, costs)
+
+
+class _Problem:
+    """Gauss-Newton on starts and parameters, with the starts eliminated."""
+
+    def __init__(self, model: Model, names: tuple[str, ...], prior: Array, segments: Segments, threads: int) -> None:
+        if not len(segments):
+            raise DataError("no segment without a gap in any of the recordings; give a shorter --segment")
+        self.model, self.names, self.prior, self.segments = model, names, prior, segments
+        self.columns = [list(model.parameters).index(name) for name in names]
+        self.base = np.array([model[name] for name in names])
+        specs = [model.specification(name) for name in names]
+        self.low, self.high = np.array([s.low for s in specs]), np.array([s.high for s in specs])
+        self.threads = threads
+
+    def _parameters(self, theta: Array) -> Array:
+        """Parameter vectors (..., parameters) for values (..., free)."""
+        values = np.tile(self.model.values, (*theta.shape[:-1], 1))
+        values[..., self.columns] = theta
+        return values
+
+    def _residuals(self, states: Array, theta: Array) -> Array:
+        """Whitened errors (segments, residuals)."""
+        parameters = np.tile(self._parameters(theta), (len(states), 1))
+        return np.asarray(self.segments.residuals(self.model, states, parameters, self.threads)[0])
+
+    def _jacobian(self, states: Array, theta: Array, residuals: Array) -> tuple[Array, Array]:
+        """Derivatives (segments, residuals, states) by starts in scales and (..., free) by parameters in priors."""
+        steps = self._steps(theta)
+        shifted = theta + np.diag(steps)
+        n, count = states.shape[1], len(states)
+        lanes = np.concatenate([self.segments.probes(states), np.tile(states, (len(theta), 1))])
+        values = np.concatenate([np.tile(theta, (n, 1)), shifted])
+        parameters = np.repeat(self._parameters(values), count, axis=0)
+        change = self.segments.residuals(self.model, lanes, parameters, self.threads) - residuals
+        change[:n] /= PROBE
+        change[n:] *= (self.prior / steps)[:, None, None]
+        moved = np.moveaxis(change, 0, 2)
+        return moved[..., :n], moved[..., n:]
+
+    def _cost(self, residuals: Array, states: Array, theta: Array) -> float:
+        size = np.abs(residuals)
+        robust = np.where(size < HUBER, 0.5 * size**2, HUBER * (size - 0.5 * HUBER))
+        start, moved = self.segments.from_guess(states), (theta - self.base) / self.prior
+        return float(np.sum(robust) + 0.5 * np.sum(start**2) + 0.5 * np.sum(moved**2))
+
+    def _blocks(self, states: Array, theta: Array, residuals: Array) -> tuple[Array, ...]:
+        """Normal equations segment by segment: parameters (S, p, p), cross (S, p, n), starts (S, n, n), gradients."""
+        by_state, by_theta = self._jacobian(states, theta, residuals)
+        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-300))[..., None]
+        state_t, theta_t = (np.swapaxes(part * weight, 1, 2) for part in (by_state, by_theta))
+        n = states.shape[1]
+        start = self.segments.from_guess(states)[0]
+        return (
+            theta_t @ by_theta,
+            theta_t @ by_state,
+            state_t @ by_state + np.eye(n),
+            (theta_t @ residuals[..., None])[..., 0],
+            (state_t @ residuals[..., None])[..., 0] + start,
+        )
+
+    def _steps(self, theta: Array) -> Array:
+        """Finite-difference steps: a hundredth of the prior, away from a bound."""
+        steps = 1e-2 * self.prior
+        return np.where(theta + steps > self.high, -steps, steps)
+
+    def solve(self, progress: Progress) -> tuple[Array, list[float]]:
+        """Levenberg-Marquardt; returns the parameters and the cost after each iteration."""
+        states, theta, damping = self.segments.guess.copy(), self.base.copy(), 1e-3
+        residuals = self._residuals(states, theta)
+        costs = [self._cost(residuals, states, theta)]
+        for k in range(_ITERATIONS):
+            progress(k / _ITERATIONS, f"cost {costs[-1]:.4g}")
+            blocks = self._blocks(states, theta, residuals)
+            while True:
+                new_states, new_theta = self._step(states, theta, blocks, damping)
+                tried = self._residuals(new_states, new_theta)
+                cost = self._cost(tried, new_states, new_theta)
+                if cost < costs[-1] or damping > 1e8:
+                    break
+                damping *= 10.0
+            if not cost < costs[-1]:
+                break
+            states, theta, residuals, damping = new_states, new_theta, tried, max(damping * 0.1, 1e-9)
+            costs.append(cost)
+            if costs[-2] - costs[-1] < _ENOUGH * costs[-1]:
+                break
+        if not np.isfinite(costs[-1]):
+            raise NumericalError("the refit found no finite prediction; check the recordings and the model first")
+        self.blocks = self._blocks(states, theta, residuals)
+        progress(1.0, f"cost {costs[-1]:.4g}")
+        return theta, costs
+
+    def _step(self, states: Array, theta: Array, blocks: tuple[Array, ...], damping: float) -> tuple[Array, Array]:
+        A, B, C, g, h = blocks
+        damped = C + damping * np.eye(C.shape[1]) * np.einsum("snn->sn", C)[:, None, :]
+        reduced, gradient = _eliminate(A, B, damped, g, h)
+        total, slope = reduced.sum(0) + np.eye(len(theta)), gradient.sum(0) + (theta - self.base) / self.prior
+        total += damping * np.diag(np.diag(total))
+        move = -np.linalg.solve(total, slope)
+        start_move = -np.linalg.solve(damped, (h + np.einsum("spn,p->sn", B, move))[..., None])[..., 0]
+        limited = np.clip(theta + move * self.prior, self.low, self.high)
+        return states + start_move * self.segments.scale, limited
+
+    def result(self, theta: Array, start: Array, costs: list[float]) -> Refit:
+        """Estimates with deviations from a bootstrap over segments of the linearised problem."""
+        reduced, gradient = _eliminate(*self.blocks)
+        shifts = _bootstrap(reduced, gradient - gradient.mean(0), len(theta))
+        deviation = np.maximum(shifts.std(0), 1e-12) * self.prior
+        covariance = np.atleast_2d(np.cov(shifts.T))
+        scale = np.sqrt(np.diag(covariance))
+        # a direction that only the prior holds is not determined by the data
+        information = np.diag(np.linalg.inv(reduced.sum(0) + 1e-9 * np.eye(len(theta))))
+        deviation = np.where(information > 1e6, np.inf, deviation)
+        estimates = {
+            name: Estimate(float(t), float(d), float(t - 1.96 * d), float(t + 1.96 * d), float(b), float(p))
+            for name, t, d, b, p in zip(self.names, theta, deviation, start, self.prior, strict=True)
+        }
+        model = self.model.with_parameters({n: float(t) for n, t in zip(self.names, theta, strict=True)})
+        return Refit(model, estimates, covariance / np.outer(scale, scale), tuple(costs))
+
+
+def _eliminate(A: Array, B: Array, C: Array, g: Array, h: Array) -> tuple[Array, Array]:
+    """Schur complements onto the parameters: (segments, p, p) and gradients (segments, p)."""
+    solved = np.linalg.solve(C, np.concatenate([np.swapaxes(B, 1, 2), h[..., None]], axis=2))
+    return A - B @ solved[..., :-1], g - (B @ solved[..., -1:])[..., 0]
+
+
+def _bootstrap(reduced: Array, gradient: Array, count: int) -> Array:
+    """Parameter shifts (resamples, p) when the segments are drawn with replacement."""
+    rng = np.random.default_rng(0)
+    weights = rng.multinomial(len(reduced), np.full(len(reduced), 1.0 / len(reduced)), _RESAMPLES).astype(float)
+    matrices = np.tensordot(weights, reduced, 1) + np.eye(count)
+    return -np.linalg.solve(matrices, (weights @ gradient)[..., None])[..., 0]
