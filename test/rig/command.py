@@ -27,7 +27,7 @@ def _arguments() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="NAME[=SIZE]",
-        help="hide this effect, drawn size if none is given; again for a second; 'random' draws one by the seed",
+        help="hide this effect, of a drawn size if none is given; give it again for a second effect; 'random' draws one by the seed, 'outside' one that no catalogue has",
     )
     parser.add_argument(
         "--scale", type=float, default=1.0, help="strength of drawn sizes, 1 full (default), 0.2 a fifth"
@@ -42,8 +42,11 @@ def _arguments() -> argparse.ArgumentParser:
 
 
 def _case(wanted: argparse.Namespace) -> Case:
-    if wanted.effect == ["random"]:
-        return draw(wanted.seed, scale=(wanted.scale, wanted.scale))
+    scale = (wanted.scale, wanted.scale)
+    if wanted.effect == ["outside"]:
+        return draw(wanted.seed, 1, scale, True, wanted.wear, wanted.rough)
+    if wanted.effect and set(wanted.effect) == {"random"}:
+        return draw(wanted.seed, len(wanted.effect), scale, False, wanted.wear, wanted.rough)
     return build(wanted.seed, [parse(text) for text in wanted.effect], wanted.wear, wanted.rough, wanted.scale)
 
 

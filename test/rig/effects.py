@@ -5,6 +5,7 @@ effect. OUTSIDE holds what no catalogue has.
 """
 
 import difflib
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -36,10 +37,18 @@ def find(name: str) -> Effect:
 
 
 def parse(text: str) -> Wish:
-    """NAME or NAME=SIZE, as on a command line."""
-    name, _, size = text.partition("=")
-    find(name)
-    return Wish(name, float(size) if size else None)
+    """NAME or NAME=SIZE, as on a command line; KeyError for an unknown name, ValueError for a size that is none."""
+    name, equals, size = text.partition("=")
+    effect = find(name)
+    if not equals:
+        return Wish(name)
+    try:
+        value = float(size)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{size!r} is no size of {name}: give a number in {effect.unit}, as in {name}={effect.high:g}")
+    return Wish(name, value)
 
 
 def build(seed: int, wishes: Sequence[Wish] = (), wear: float = 0.05, rough: bool = False, scale: float = 1.0) -> Case:
@@ -91,7 +100,7 @@ def _refuse_overlap(hidden: Sequence[dict[str, Any]]) -> None:
     """Raise ValueError if two effects set one field; viscous parts and dead volumes add up."""
     seen: dict[str, str] = {}
     for effect in hidden:
-        for key in set(effect["fields"]) - {"viscous_out", "viscous_in", "volume_a", "volume_b"}:
+        for key in sorted(set(effect["fields"]) - {"viscous_out", "viscous_in", "volume_a", "volume_b"}):
             if key in seen:
                 raise ValueError(f"{seen[key]} and {effect['shape']} both set {key}: give one of them")
             seen[key] = effect["shape"]
