@@ -1,7 +1,7 @@
 """Many short simulations against measurements: segments of runs, whitened, as one batch of lanes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,11 @@ class Segments:
 
     def __len__(self) -> int:
         return len(self.first)
+
+    def pick(self, chosen: Index) -> "Segments":
+        """Some of the segments, by index."""
+        rows = ("first", "measured", "weight", "guess", "scale", "run")
+        return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
 
     def probes(self, states: Array) -> Array:
         """States (states * segments, states), each entry in turn moved by `PROBE` of its scale: lanes of a Jacobian."""
@@ -83,7 +88,8 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
     for run in runs:
         if abs(run.sample_time / dt - 1.0) > 1e-3:
             raise UsageError(
-                f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; lay them on one grid"
+                f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; "
+                "lay them on one grid"
             )
     names = measured_columns(model)
     offsets = np.cumsum([0, *(len(run.input) for run in runs)])

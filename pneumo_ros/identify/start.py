@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 BEFORE, AFTER = 0.3, 0.1  # s, fitted before and after each instant: most of what the state follows from is its past
-_ITERATIONS = 6
+_ITERATIONS = 20  # at most; four on average, ten and more where a breakaway hides between guess and truth
+_ENOUGH, _STUCK = 1e-3, 1e5  # a start is found when a step gains less than this share, or when damping is beyond this
 
 
 def start_states(model: Model, run: Run, at: Index) -> Array:
@@ -37,23 +38,32 @@ def start_states(model: Model, run: Run, at: Index) -> Array:
 
 def fit_starts(model: Model, segments: Segments) -> Array:
     """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself."""
-    windows, n = segments.guess.shape
     x: Array = segments.guess.copy()
-    damping = np.full(windows, 1e-3)
+    damping = np.full(len(x), 1e-3)
     residual = _residuals(model, segments, x)[0]
+    active = np.arange(len(x))
     for _ in range(_ITERATIONS):
-        shifted = _residuals(model, segments, segments.probes(x))
-        jacobian = np.moveaxis((shifted - residual) / PROBE, 0, 2)  # (windows, residuals, states)
-        normal = np.swapaxes(jacobian, 1, 2) @ jacobian
-        gradient = np.einsum("wrs,wr->ws", jacobian, residual)
-        diagonal = np.einsum("wss->ws", normal)
-        damped = normal + damping[:, None, None] * np.eye(n) * diagonal[:, None, :]
-        candidate = x - np.linalg.solve(damped, gradient[:, :, None])[:, :, 0] * segments.scale
-        tried = _residuals(model, segments, candidate)[0]
-        better = np.sum(tried**2, axis=1) < np.sum(residual**2, axis=1)
-        x[better], residual[better] = candidate[better], tried[better]
-        damping = np.where(better, damping * 0.2, damping * 10.0)
+        part, r = segments.pick(active), residual[active]
+        candidate = x[active] + _move(model, part, x[active], r, damping[active])
+        tried = _residuals(model, part, candidate)[0]
+        cost, less = np.sum(r**2, axis=1), np.sum(tried**2, axis=1)
+        better = less < cost
+        x[active[better]], residual[active[better]] = candidate[better], tried[better]
+        damping[active] *= np.where(better, 0.2, 10.0)
+        active = active[np.where(better, cost - less > _ENOUGH * cost, damping[active] < _STUCK)]
+        if not len(active):
+            break
     return x
+
+
+def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: Array) -> Array:
+    """Levenberg-Marquardt step (segments, states) from states x with residuals (segments, residuals)."""
+    jacobian = np.moveaxis((_residuals(model, segments, segments.probes(x)) - residual) / PROBE, 0, 2)
+    normal = np.swapaxes(jacobian, 1, 2) @ jacobian
+    gradient = np.einsum("wrs,wr->ws", jacobian, residual)
+    diagonal = np.einsum("wss->ws", normal)
+    damped = normal + damping[:, None, None] * np.eye(x.shape[1]) * diagonal[:, None, :]
+    return np.asarray(-np.linalg.solve(damped, gradient[:, :, None])[:, :, 0] * segments.scale)
 
 
 def _residuals(model: Model, segments: Segments, states: Array) -> Array:
