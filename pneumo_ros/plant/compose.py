@@ -12,11 +12,13 @@ der_x = source - rate x, a state moves by the exact solution for constant source
 take a rational stand-in (`maths.damped`) that decays likewise. Both are stable for any rate h.
 """
 
+import builtins
 from dataclasses import dataclass
 from functools import lru_cache
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect, Function, Parameter
 from pneumo_ros.plant.emit import module_text
 from pneumo_ros.plant.signals import SIGNALS
@@ -46,36 +48,10 @@ class Composition:
         raise UsageError(unknown_name("parameter", dotted, self.parameters))
 
 
-# names the generated entry points use themselves
-_RESERVED = frozenset(
-    [
-        "x",
-        "q",
-        "u",
-        "h",
-        "k",
-        "s",
-        "i",
-        "j",
-        "b",
-        "c",
-        "X",
-        "_",
-        "out",
-        "half",
-        "middle",
-        "elapsed",
-        "voltage",
-        "first",
-        "t0",
-        "stride",
-        "parts",
-        "values",
-        "np",
-        "math",
-        "LANES",
-    ]
-)
+# names the generated module uses itself
+_WORDS = """x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts values np math LANES
+entry inline derivatives after_step observation step step_lanes run run_lanes follow rates observe"""
+_RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 
 
 class Resolver:
@@ -88,6 +64,7 @@ class Resolver:
         self.writers: dict[str, list[type[Effect]]] = {}
         for effect in effects:
             self._add(effect)
+        self._check_names()
 
     def _add(self, effect: type[Effect]) -> None:
         for state in effect.states:
@@ -105,6 +82,17 @@ class Resolver:
             if name in SIGNALS and SIGNALS[name].kind == "input":
                 raise UsageError(f"effect {effect.name} returns {name}, which is an input and cannot be written")
             self.writers.setdefault(name, []).append(effect)
+
+    def _check_names(self) -> None:
+        for state in self.states:
+            for name in {f"d_{state}", f"r_{state}", f"{state}_m", f"{state}_n"} & set(self.states):
+                raise UsageError(
+                    f"state {name} of effect {self.states[name].name} is too like state {state}; rename it"
+                )
+        for name, owners in self.owners.items():
+            if name in self.states or name in SIGNALS:
+                kind = "state" if name in self.states else "signal"
+                raise UsageError(f"parameter {name} of effect {owners[0]} is the name of a {kind}; choose another")
 
     def parameter(self, name: str, effect: type[Effect] | None) -> str | None:
         """Kernel variable of the parameter an argument means: the effect's own, `effect__name`, or a unique one."""

@@ -114,6 +114,8 @@ class FlowWriter:
             return
         data = effect.functions[function]
         arguments = ", ".join(self.value(name, effect) for name in data.reads)
+        if (effect.name, function) in self._called:  # meanwhile, to rewrite a signal that it reads
+            return
         self._called.add((effect.name, function))
         called = self.book.add(data, f"{effect.name}__{function}", f"effect {effect.name}")
         targets = ", ".join(f"{effect.name}__{name}" for name in data.writes)

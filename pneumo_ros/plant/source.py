@@ -32,6 +32,7 @@ class SourceBook:
         self.texts: list[str] = []
         self._names: dict[str, str] = {}  # definition text -> name
         self._taken: set[str] = set(_REPLACED)
+        self._open: list[Callable[..., Any]] = []  # helpers being written
 
     def add(self, function: Function, name: str, title: str) -> str:
         """Add an effect's function under `name`; `title` is what error messages call it."""
@@ -54,7 +55,12 @@ class SourceBook:
         tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
         if not isinstance(tree, ast.FunctionDef):
             raise UsageError(f"{title} calls {function.__name__}, which is no plain function")
-        return self._define(tree, function.__globals__, function.__name__, f"{title}, {function.__name__}")
+        if function in self._open:
+            raise UsageError(f"{title} calls {function.__name__}, which calls itself; write a loop of fixed length")
+        self._open.append(function)
+        name = self._define(tree, function.__globals__, function.__name__, f"{title}, {function.__name__}")
+        self._open.pop()
+        return name
 
 
 class _Rewriter(ast.NodeTransformer):
@@ -78,9 +84,17 @@ class _Rewriter(ast.NodeTransformer):
         return tree
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST:
-        assert node.value is not None
+        if node.value is None:
+            return ast.Pass()
         assignment: ast.AST = self.visit(ast.Assign(targets=[node.target], value=node.value))
         return assignment
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        module = self.scope.get(node.value.id) if isinstance(node.value, ast.Name) else None
+        ours = getattr(maths, node.attr, None) if module in (math, np) else None
+        if isinstance(ours, types.FunctionType) and self.scope is not vars(maths):  # math.exp and np.exp mean our exp
+            return ast.Name(self.book.helper(ours, self.title), node.ctx)
+        return self.generic_visit(node)
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
         name = node.id
@@ -91,6 +105,10 @@ class _Rewriter(ast.NodeTransformer):
             return ast.Constant(value)
         if isinstance(value, types.ModuleType) and value in _MODULES:
             return ast.Name(_MODULES[value], node.ctx)
+        if isinstance(value, types.BuiltinFunctionType) and value.__module__ == math.__name__:
+            value = getattr(maths, value.__name__, value)  # `from math import exp` means our exp
+            if isinstance(value, types.BuiltinFunctionType):
+                return ast.Name(f"math.{value.__name__}", node.ctx)
         if isinstance(value, types.FunctionType):
             if value.__module__ == maths.__name__ and name in _REPLACED:
                 return node
