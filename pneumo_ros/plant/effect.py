@@ -21,6 +21,7 @@ import ast
 import inspect
 import math
 import re
+import reprlib
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -35,6 +36,15 @@ __all__ = [
     "Effect", "Function", "Parameter", "State",
     "atan", "cos", "exp", "log", "pi", "power", "sign", "sin", "sqrt", "tanh",
 ]  # fmt: skip
+
+
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel = 2  # what a file holds may be long and deep
+
+
+def brief(value: object) -> str:
+    """What was given, for an error message: never more than a line."""
+    return _SHORT.repr(value)
 
 
 @dataclass(frozen=True)
@@ -55,11 +65,12 @@ class Parameter:
 
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""
-        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-            raise UsageError(f"{name} is {value!r}; it takes a number in {self.unit}, {self.range_text()}")
-        if not math.isfinite(value) or not self.low <= value <= self.high:
-            raise UsageError(f"{name} is {value!r} {self.unit}; allowed is {self.range_text()}")
-        return float(value)
+        if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+            raise UsageError(f"{name} is {brief(value)}; it takes a number in {self.unit}, {self.range_text()}")
+        number = min(max(value, -math.inf), math.inf) if isinstance(value, int) else float(value)
+        if not self.low <= number <= self.high or math.isinf(number):
+            raise UsageError(f"{name} is {brief(value)} {self.unit}; allowed is {self.range_text()}")
+        return float(number)
 
     def range_text(self) -> str:
         """The allowed range in words."""

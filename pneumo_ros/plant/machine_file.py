@@ -10,6 +10,7 @@ import yaml
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.files import write_whole
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.effect import brief
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.model import Model
 
@@ -51,14 +52,25 @@ def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | 
         raise UsageError(f"machine file {name_or_path}: {error}") from error
 
 
+class _Loader(yaml.SafeLoader):
+    """YAML's safe subset, which refuses a name given twice instead of keeping the last."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        names = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
+        for key, _ in node.value:
+            if names.count(key.value) > 1 and isinstance(key, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, f"{key.value} is given twice", key.start_mark)
+        return super().construct_mapping(node, deep)
+
+
 def parse_machine(text: str, name: str, library: Library) -> Model:
     """The model a machine file's text describes; UsageError as for `load_model`."""
     try:
-        document = yaml.safe_load(text)
+        document = yaml.load(text, _Loader)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         place = getattr(error, "problem_mark", None)
         where = f" at line {place.line + 1}" if place else ""
-        raise UsageError(f"this is no YAML{where}: {getattr(error, 'problem', None) or error}") from error
+        raise UsageError(f"this cannot be read as YAML{where}: {getattr(error, 'problem', None) or error}") from error
     return model_from_dict(_parameters(document), name, library)
 
 
@@ -76,7 +88,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
     """A model from the nested dictionary of a machine file (also what `description` carries); UsageError as above."""
     listed = given.get("effects")
     if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
-        raise UsageError(f"'effects' is {listed!r}; it takes a list of names, for example [dead_zone, arctan_flow]")
+        raise UsageError(f"'effects' is {brief(listed)}; it takes a list of names, such as [dead_zone, arctan_flow]")
     sections = {key: value for key, value in given.items() if key != "effects"}
     frame = (
         FRAME
@@ -89,7 +101,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
             hint = "; add it to 'effects' if you want it" if section in library.names() else ""
             raise UsageError(f"{unknown_name('section', str(section), {*known, *FRAME})}{hint}")
         if not isinstance(values, dict):
-            raise UsageError(f"section {section} is {values!r}; it takes its parameters, name: value")
+            raise UsageError(f"section {section} is {brief(values)}; it takes its parameters, name: value")
     values = {f"{section}.{key}": _number(v) for section, inner in sections.items() for key, v in inner.items()}
     return Model.build(listed, values, name=name, library=library, frame=frame)
 
