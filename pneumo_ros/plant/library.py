@@ -5,7 +5,6 @@ other packages offer theirs under the entry point group `pneumo_ros.effects`.
 """
 
 import importlib
-import importlib.util
 import sys
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
@@ -40,23 +39,24 @@ def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
     return {effect.name: effect for effect in own if effect.__module__ == module.__name__}
 
 
-@lru_cache(maxsize=32)
 def effects_of_file(path: str) -> Mapping[str, type[Effect]]:
-    """The effects of a user's Python file (it is executed: name only files you trust).
+    """The effects of a user's Python file (it is executed: name only files you trust), anew after an edit.
 
     Raises UsageError when the file is missing, does not run, or holds no effect.
     """
-    location = Path(path)
-    if not location.is_file():
+    if not Path(path).is_file():
         raise UsageError(f"effects file {path} does not exist")
-    name = f"pneumo_effects_{location.stem}"
-    specification = importlib.util.spec_from_file_location(name, location)
-    if specification is None or specification.loader is None:
-        raise UsageError(f"effects file {path} is no Python file; it must end in .py")
-    module = importlib.util.module_from_spec(specification)
-    sys.modules[name] = module
+    return _effects_of_file(str(Path(path).resolve()), Path(path).stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=32)
+def _effects_of_file(path: str, _edited: int) -> Mapping[str, type[Effect]]:
+    location = Path(path)
+    module = ModuleType(f"pneumo_effects_{location.stem}")
+    module.__file__ = str(location)
+    sys.modules[module.__name__] = module
     try:
-        specification.loader.exec_module(module)
+        exec(compile(location.read_bytes(), location, "exec"), vars(module))
     except UsageError as error:
         raise UsageError(f"effects file {path}: {error}") from error
     except Exception as error:  # whatever a user's file raises is told, not thrown
