@@ -124,7 +124,8 @@ class Model:
     def state(self, **given: float) -> Array:
         """State vector (states,) with the given entries; others at rest, pressures at the atmosphere's.
 
-        Raises UsageError for unknown or non-finite entries and for positions that leave no volume in a chamber.
+        Raises UsageError for unknown or non-finite entries, for positions beyond the stroke, and for chambers without
+        volume at an end of the stroke.
         """
         rest = {s: effect.states[s].initial for effect in self.composition.effects for s in effect.states}
         if not self.force_driven:
@@ -135,10 +136,20 @@ class Model:
             if not math.isfinite(value):
                 raise UsageError(f"initial {key} is {value}; it takes a finite number")
             rest[key] = float(value)
+        self._check_volumes()
         reach = 0.5 * self["piston.stroke"]
         if abs(rest["y"]) > 1.05 * reach:
             raise UsageError(f"initial y is {rest['y']:g} m, outside the stroke of {-reach:g} to {reach:g} m")
         return np.array([rest[s] for s in self.states])
+
+    def _check_volumes(self) -> None:
+        for side in "ab" if not self.force_driven else "":
+            swept = 0.5 * self["piston.stroke"] * self[f"piston.area_{side}"]
+            if self[f"chambers.volume_{side}"] <= swept:
+                raise UsageError(
+                    f"chamber {side} has no volume left at its end: chambers.volume_{side} (at mid stroke) is "
+                    f"{self[f'chambers.volume_{side}']:g} m3, the piston sweeps {swept:g} m3 of it; give more"
+                )
 
     def simulate(
         self,
@@ -157,8 +168,7 @@ class Model:
         another. Raises NumericalError when the state leaves the finite numbers, naming the time, UsageError for a step
         that is not positive or a voltage that does not fill whole samples.
         """
-        held = np.array(voltage, dtype=float, ndmin=1)
-        x = self._state_vector(state)
+        held, x = _voltages(voltage), self._state_vector(state)
         out = np.empty((_whole(len(held), parts), len(x)))
         stride, h = substeps(sample_time / parts, step)
         self.kernel.run(x, self.values, held, start, h, stride, parts, out)
@@ -193,7 +203,7 @@ class Model:
         """
         x = np.array(states, dtype=float, ndmin=2)
         q = np.tile(self.values, (len(x), 1)) if parameters is None else np.array(parameters, dtype=float)
-        held = np.array(voltage, dtype=float, ndmin=1)
+        held = _voltages(voltage)
         begin = np.zeros(len(x), dtype=np.int64) if first is None else np.asarray(first, dtype=np.int64)
         if x.shape[1] != len(self.states) or q.shape != (len(x), len(self.parameters)) or begin.shape != (len(x),):
             raise UsageError(
@@ -211,7 +221,7 @@ class Model:
     def follow(
         self, measured: ArrayLike, voltage: ArrayLike, rest: ArrayLike, *, sample_time: float = 1e-3, step: float = STEP
     ) -> tuple[Array, Array]:
-        """Drive the effects' own states along a measured motion; returns states and derivatives, both (samples, states).
+        """Drive the effects' own states along a measured motion; returns states, derivatives, both (samples, states).
 
         measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven); voltage[k]
         is held from sample k to k + 1; rest: values of the other states at sample 0. The derivatives are
@@ -274,6 +284,13 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
     stride = max(1, math.ceil(sample_time / step - 1e-9))
     return stride, sample_time / stride
+
+
+def _voltages(voltage: ArrayLike) -> Array:
+    held = np.array(voltage, dtype=float, ndmin=1)
+    if held.ndim > 1 or not np.isfinite(held).all():
+        raise UsageError(f"voltage of shape {held.shape} must be one row of finite numbers [V]")
+    return held
 
 
 def _whole(voltages: int, parts: int) -> int:
