@@ -1,5 +1,7 @@
 """The independent rig against the numbers of the model's specification, and its two integrators against each other."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from rig import axis, loop, oracle
@@ -64,6 +66,12 @@ def test_oracle_stops_at_the_end_of_the_stroke():
     x = oracle.simulate({}, np.full(150, 7.0), {"y": 0.9, "p_a": 3e5, "p_b": 3e5}, 0.02)
     assert x[-1, 0] == pytest.approx(1.0, abs=1e-3)
     assert abs(x[-1, 1]) < 1e-4
+
+
+def test_the_rig_shares_no_code_with_what_it_judges():
+    sources = [source.read_text() for source in Path(oracle.__file__).parent.glob("*.py")]
+    assert len(sources) > 10
+    assert not any("pneumo_ros" in source for source in sources)
 
 
 def test_oracle_refuses_names_it_does_not_know():

@@ -14,6 +14,7 @@ IN_MOTION = [name for name in effects.EFFECTS if name not in AT_SENSORS | AT_END
 OTHER_LAWS = {"choked_flow", "heat_exchange"}  # no size of theirs gives the base's law back
 MANOEUVRE = np.concatenate([np.full(400, 2.0), np.full(1000, -2.5), np.zeros(200), np.full(400, 0.95)])
 BASE = Machine()
+COARSE = 4e-5  # s, twice the step of recordings
 COLUMN = {name: k for k, name in enumerate(rates.STATES)}
 
 
@@ -25,7 +26,7 @@ def hidden(name, size=None):
 
 @functools.cache
 def base_run():
-    return run(BASE)[0]
+    return run(BASE, step=COARSE)[0]
 
 
 def run(machine, voltage=MANOEUVRE, step=loop.STEP, y=0.1, p_a=3e5):
@@ -35,8 +36,8 @@ def run(machine, voltage=MANOEUVRE, step=loop.STEP, y=0.1, p_a=3e5):
 
 @pytest.mark.parametrize("name", IN_MOTION)
 def test_effect_changes_the_motion_and_is_resolved_by_the_step(name):
-    x, base = run(hidden(name))[0], base_run()
-    finer = run(hidden(name), step=1e-5)[0]
+    x, base = run(hidden(name), step=COARSE)[0], base_run()
+    finer = run(hidden(name))[0]
     changed = np.abs(x - base).max(axis=0)[:4]
     error = np.abs(x - finer).max(axis=0)[:4]
     assert np.all(np.isfinite(x))
@@ -48,7 +49,8 @@ def test_effect_changes_the_motion_and_is_resolved_by_the_step(name):
 def test_weaker_is_nearer_to_the_base(name):
     effect = effects.find(name)
     full = effect.draw(np.random.default_rng(1))
-    away = [np.abs(run(hidden(name, effect.weaken(full, s)))[0] - base_run())[:, 2].sum() for s in (1.0, 0.02)]
+    shares = [hidden(name, effect.weaken(full, share)) for share in (1.0, 0.02)]
+    away = [np.abs(run(machine, step=COARSE)[0] - base_run())[:, 2].sum() for machine in shares]
     assert away[1] < 0.3 * away[0]
 
 

@@ -27,7 +27,8 @@ def _arguments() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="NAME[=SIZE]",
-        help="hide this effect, of a drawn size if none is given; give it again for a second effect; 'random' draws one by the seed, 'outside' one that no catalogue has",
+        help="hide this effect, of a drawn size if none is given; give it again for a second effect; "
+        "'random' draws one by the seed, 'outside' one that no catalogue has",
     )
     parser.add_argument(
         "--scale", type=float, default=1.0, help="strength of drawn sizes, 1 full (default), 0.2 a fifth"
