@@ -2,9 +2,9 @@
 
 The same source runs in pure Python, compiles to scalar machine code and vectorises over lanes: no branch that LLVM
 cannot turn into a select, no call into libm. Hence compiled and interpreted results agree to the last bit. Rational
-approximations and range reductions are those of the Cephes library (S. L. Moshier, 1989), accurate to about 2e-16
-relative; the exponential is a minimax polynomial of degree 11, 8.5e-18 relative, because a division would wait longer
-than the multiplications of Estrin's scheme.
+approximations of log and atan and the reduction of exp's argument are those of the Cephes library (S. L. Moshier,
+1989); exp and sin are polynomials through Chebyshev points, in Estrin's scheme, because a division would wait longer
+than they do. Relative errors are a few units in the last place.
 """
 
 import math
@@ -40,9 +40,9 @@ def exp(x: float) -> float:
     r = x - k * 6.93145751953125e-1 - k * 1.42860682030941723212e-6
     s = r * r
     f = s * s
-    low = (0.4999999999999999 + r * 0.16666666666666616) + s * (0.04166666666669605 + r * 0.00833333333350833)
-    mid = (1.388888887251106e-3 + r * 1.984126872704277e-4) + s * (2.4801608506941774e-5 + r * 2.755955529205422e-6)
-    high = 2.756824727392381e-7 + r * 2.3704436644330245e-8
+    low = (0.5000000000000001 + r * 0.16666666666666669) + s * (0.041666666666624164 + r * 0.008333333333330065)
+    mid = (1.3888888917196719e-3 + r * 1.9841269863040545e-4) + s * (2.4801521322368692e-5 + r * 2.7557268480310024e-6)
+    high = 2.7620075879983367e-7 + r * 2.5100375832561234e-8
     return (1.0 + (r + s * (low + f * (mid + f * high)))) * power_of_two(k)
 
 
@@ -67,20 +67,29 @@ def power(x: float, a: float) -> float:
 
 
 def sin(x: float) -> float:
-    """Sine; accurate for |x| below about 1e5."""
+    """Sine; accurate for |x| below about 1e6."""
     k = (x * 0.3183098861837907 + _ROUND) - _ROUND
-    r = ((x - k * 3.140625) - k * 9.67502593994140625e-4) - k * 1.509957990978376432e-7
-    z = r * r
-    p = (1.58962301576546568060e-10 * z - 2.50507477628578072866e-8) * z + 2.75573136213857245213e-6
-    p = ((p * z - 1.98412698295895385996e-4) * z + 8.33333333332211858878e-3) * z - 1.66666666666666307295e-1
-    s = r + r * z * p
-    half = 0.5 * k
-    return s if half == (half + _ROUND) - _ROUND else -s
+    return _half_wave(x, k, k)
 
 
 def cos(x: float) -> float:
-    """Cosine; accurate for |x| below about 1e5."""
-    return sin(x + 1.5707963267948966)
+    """Cosine; accurate for |x| below about 1e6."""
+    k = ((x * 0.3183098861837907 + 0.5) + _ROUND) - _ROUND
+    return _half_wave(x, k - 0.5, k)
+
+
+def _half_wave(x: float, turns: float, k: float) -> float:
+    """(-1)**k sin(x - turns pi) for an argument between -pi/2 and pi/2; pi in three parts, the first two of 30 bits."""
+    r = ((x - turns * 3.141592651605606) - turns * 1.9841871583270443e-9) - turns * 1.034036596358821e-18
+    z = r * r
+    f = z * z
+    low = (-0.16666666666666666 + z * 0.008333333333333316) + f * (-1.9841269841254974e-4 + z * 2.7557319219163234e-6)
+    high = (-2.5052107616996182e-8 + z * 1.6058977312464087e-10) + f * (
+        -7.643970296798572e-13 + z * 2.7314447669863995e-15
+    )
+    s = r + r * z * (low + f * f * high)
+    half = 0.5 * k
+    return s if half == (half + _ROUND) - _ROUND else -s
 
 
 def atan(x: float) -> float:
