@@ -8,6 +8,7 @@ import numpy as np
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records.block import Block, Channel, Integers
+from pneumo_ros.records.contract import LATCHED, split
 from pneumo_ros.records.source import find_sources
 
 
@@ -20,12 +21,13 @@ class Message(NamedTuple):
 
 
 class Overview(NamedTuple):
-    """What a recording holds: times in ns; `counts` are messages per topic."""
+    """What a recording holds: times in ns; `counts` are messages per topic; `latched` those of latched topics."""
 
     start: int
     end: int
     channels: dict[str, Channel]
     counts: dict[str, int]
+    latched: list[Message]
 
 
 class Bag:
@@ -37,6 +39,7 @@ class Bag:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self._sources, self.warnings = find_sources(self.path)
+        self._earliest: list[int] = []  # time of each block, once known
 
     def blocks(self) -> Iterator[Block]:
         """Blocks with at least one message, in the order of the files; may be asked for more than once."""
@@ -47,29 +50,30 @@ class Bag:
 
     def overview(self) -> Overview:
         """Topics, counts and times; reads everything once. Raises DataError when there is no message."""
-        channels: dict[str, Channel] = {}
-        counts: dict[str, int] = {}
+        seen = Overview(0, 0, {}, {}, [])
         first, last = [], []
         for block in self.blocks():
             first.append(int(block.log_time.min()))
             last.append(int(block.log_time.max()))
-            numbers, amounts = np.unique(block.channel, return_counts=True)
-            for number, amount in zip(numbers.tolist(), amounts.tolist(), strict=True):
-                channel = block.channels[number]
-                channels.setdefault(channel.topic, channel)
-                counts[channel.topic] = counts.get(channel.topic, 0) + amount
+            _survey(block, seen)
         if not first:
             raise DataError(" ".join([f"{self.path} holds no messages.", *self.warnings]))
-        return Overview(min(first), max(last), channels, counts)
+        self._earliest = first
+        seen.latched.sort(key=lambda message: message.log_time)
+        return seen._replace(start=min(first), end=max(last))
 
-    def messages(self) -> Iterator[Message]:
-        """Every message in recorded time, those of equal times in the order of the file; a few blocks in memory."""
-        earliest = [int(block.log_time.min()) for block in self.blocks()]
+    def messages(self, since: int = 0) -> Iterator[Message]:
+        """Every message in recorded time, those of equal times in the order of the file; a few blocks in memory.
+
+        Those recorded before `since` [ns] are left out.
+        """
+        earliest = self._earliest or [int(block.log_time.min()) for block in self.blocks()]
         # After block k nothing earlier than this can follow: files and chunks may overlap.
         horizons = np.minimum.accumulate(np.array([*earliest, np.iinfo(np.int64).max])[::-1])[::-1][1:]
         waiting: list[tuple[int, Block, int]] = []
-        for block, horizon in zip(self.blocks(), horizons.tolist(), strict=True):
+        for block, horizon in zip(self.blocks(), horizons.tolist(), strict=False):  # the file may have grown since
             order: Integers = np.argsort(block.log_time, kind="stable")
+            order = order[block.log_time[order] >= since]
             times = block.log_time[order].tolist()
             waiting += zip(times, [block] * len(times), order.tolist(), strict=True)
             waiting.sort(key=lambda entry: entry[0])
@@ -80,3 +84,21 @@ class Bag:
                 yield Message(origin.channels[int(origin.channel[index])], time, origin.payload(index))
                 ready += 1
             del waiting[:ready]
+
+
+def _survey(block: Block, seen: Overview) -> None:
+    """Add a block's channels, counts and latched messages to what was seen before."""
+    numbers, amounts = np.unique(block.channel, return_counts=True)
+    for number, amount in zip(numbers.tolist(), amounts.tolist(), strict=True):
+        channel = block.channels[number]
+        seen.channels.setdefault(channel.topic, channel)
+        seen.counts[channel.topic] = seen.counts.get(channel.topic, 0) + amount
+        if is_latched(channel):
+            chosen = np.flatnonzero(block.channel == number).tolist()
+            seen.latched.extend(Message(channel, int(block.log_time[i]), block.payload(i)) for i in chosen)
+
+
+def is_latched(channel: Channel) -> bool:
+    """Whether a topic was, or by the contract should have been, offered to late subscribers."""
+    found = split(channel.topic)
+    return channel.latched or (found is not None and found[1] in LATCHED)

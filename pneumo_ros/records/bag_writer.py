@@ -52,7 +52,7 @@ class BagWriter:
             if known != topic.type:
                 raise UsageError(f"{topic.name} is recorded as {known}; it cannot also be {topic.type}.")
             return
-        definition, type_hash = definition_of(topic.type)
+        definition, type_hash = definition_of(topic.type, topic.definition)
         if topic.type not in self._schemas:
             self._schemas[topic.type] = self._writer.register_schema(topic.type, "ros2msg", definition.encode())
         channel = self._writer.register_channel(

@@ -57,13 +57,32 @@ def channel_types(channel: Channel) -> Typestore:
     return types_of(channel.type, channel.definition_format, channel.definition)
 
 
-def definition_of(message_type: str) -> tuple[str, str]:
-    """Text (ros2msg) and RIHS01 hash of a standard type, as a recording carries them. Raises UsageError if unknown."""
+def definition_of(message_type: str, given: str = "") -> tuple[str, str]:
+    """Text (ros2msg) and RIHS01 hash of a type, as a recording carries them; the hash is "" where rosbags has none.
+
+    The text is that of the standard type, with its constants, unless `given` defines other fields. Raises UsageError
+    for a type that is neither given nor standard.
+    """
     store = standard_types()
+    if given and not same_fields(types_of(message_type, "ros2msg", given), store, message_type):
+        try:
+            return given, types_of(message_type, "ros2msg", given).hash_rihs01(message_type)
+        except KeyError:  # it has wide strings
+            return given, ""
     if message_type not in store.fielddefs:
         raise UsageError(unknown_name("message type", message_type, store.fielddefs))
     text, _ = store.generate_msgdef(message_type, ros_version=2)
     return text, store.hash_rihs01(message_type)
+
+
+def same_fields(given: Typestore, standard: Typestore, message_type: str) -> bool:
+    """Whether both stores define the same fields for a type and all types within it."""
+    inner = [name for name in given.fielddefs if name in standard.fielddefs]
+    return message_type in inner and all(
+        str(given.fielddefs[name][1]).replace("'char'", "'uint8'")  # Python's message classes do not tell them apart
+        == str(standard.fielddefs[name][1]).replace("'char'", "'uint8'")
+        for name in inner
+    )
 
 
 def message(message_type: str, **fields: Any) -> Any:

@@ -20,6 +20,7 @@ class BagTopic(NamedTuple):
     type: str
     latched: bool = False  # transient local
     reliable: bool = True
+    definition: str = ""  # of the type, as a .msg file says it; "" for that of the standard type
 
     def profiles(self) -> list[dict[str, Any]]:
         """The offered quality of service in rosbag2's words; `ros2 bag play` publishes with it."""

@@ -1,0 +1,121 @@
+"""Messages as bytes, straight from the middleware's queues: what a recorder wants, at a tenth of an executor's cost.
+
+The middleware's own thread puts messages into a deep queue and notes when each arrived, so nothing depends on how soon
+they are fetched. The numbers that publishers give their messages tell how many never arrived.
+"""
+
+from collections.abc import Hashable
+from typing import Any, NamedTuple
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+
+from pneumo_ros.ros.message_classes import message_class
+
+DEPTH = 5000  # messages of one topic that may wait: 5 s at 1 kHz
+
+# Best effort hears every publisher. Latched messages come only to reliable, transient local subscribers.
+_PLAIN = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+_LATCHED = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Taken(NamedTuple):
+    """One message as it arrived; times of the system clock in ns."""
+
+    received: int
+    topic: str
+    payload: bytes
+    published: int
+
+
+class LossCount:
+    """Counts what is missing between the numbers that each publisher gives its messages."""
+
+    def __init__(self) -> None:
+        self.lost = 0
+        self._last: dict[Hashable, int] = {}
+
+    def note(self, publisher: Hashable, number: int | None) -> None:
+        """A message with `number` arrived from `publisher`; None where the middleware does not number messages."""
+        if number is None:
+            return
+        last = self._last.get(publisher)
+        if last is None or number > last:
+            self._last[publisher] = number
+            self.lost += 0 if last is None else number - last - 1
+        elif number != last:  # it was counted as lost when a later one overtook it
+            self.lost -= 1
+
+
+class Intake:
+    """Subscriptions whose messages `take` fetches; no executor serves them."""
+
+    def __init__(self, owner: Node) -> None:
+        """Topics are named as `owner` would name them."""
+        self._owner = owner
+        # Its node is spun by nobody: an executor would take each message by itself and tell no time of arrival.
+        self._node = Node(
+            f"_{owner.get_name()}_intake",
+            namespace=owner.get_namespace(),
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self._subscriptions: dict[str, Subscription] = {}
+        self._losses: dict[str, LossCount] = {}
+        self.types: dict[str, str] = {}
+        self._latched: set[str] = set()
+
+    def subscribe(self, topic: str, message_type: str, latched: bool) -> None:
+        """Hear `topic` (a full name), or hear it differently. Raises UsageError when its type is not installed."""
+        kind = message_class(message_type)
+        if topic in self._subscriptions:
+            self._node.destroy_subscription(self._subscriptions[topic])
+        profile = _LATCHED if latched else _PLAIN
+        self._subscriptions[topic] = self._node.create_subscription(kind, topic, _unused, profile, raw=True)
+        self._losses.setdefault(topic, LossCount())
+        self.types[topic] = message_type
+        (self._latched.add if latched else self._latched.discard)(topic)
+
+    def relax(self) -> None:
+        """Hear topics that are to be latched, but whose publishers do not latch them, as any other."""
+        for topic in list(self._latched):
+            offered = self._owner.get_publishers_info_by_topic(topic)
+            if offered and not any(latches(one.qos_profile) for one in offered):
+                self.subscribe(topic, self.types[topic], False)
+
+    def take(self) -> list[Taken]:
+        """Everything that has arrived, topic by topic."""
+        taken: list[Taken] = []
+        for topic, subscription in self._subscriptions.items():
+            loss, fetch, kind = self._losses[topic], subscription.handle.take_message, subscription.msg_type
+            while (found := fetch(kind, True)) is not None:
+                payload, info = found
+                loss.note(_publisher(info), info["publication_sequence_number"])
+                taken.append(Taken(info["received_timestamp"], topic, payload, info["source_timestamp"]))
+        return taken
+
+    @property
+    def lost(self) -> dict[str, int]:
+        """How many messages are known to be lost, on the topics where any are."""
+        return {topic: loss.lost for topic, loss in self._losses.items() if loss.lost}
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        self._subscriptions.clear()
+        self._node.destroy_node()
+
+
+def latches(profile: QoSProfile) -> bool:
+    """Whether a publisher with `profile` keeps its last messages for late subscribers."""
+    return profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def _publisher(info: dict[str, Any]) -> Hashable:
+    """Which publisher a message came from; the same for all where rclpy does not tell."""
+    return bytes((info.get("publisher_gid") or {}).get("data", b""))
+
+
+def _unused(message: bytes) -> None:
+    """Callback of subscriptions that no executor serves."""

@@ -1,0 +1,145 @@
+"""The player node: a recording as live topics, its bytes as they were recorded, in their original timing."""
+
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock
+
+from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.records import Bag
+from pneumo_ros.records.bag import Message, Overview
+from pneumo_ros.ros.arguments import parse
+from pneumo_ros.ros.diagnostics import Health
+from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.outputs import Outputs
+from pneumo_ros.ros.playback import Playback
+from pneumo_ros.ros.run import run
+from pneumo_ros.ros.setting import Setting
+
+CLOCK = "/clock"
+SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let reading ahead delay a message
+POLL = 0.02  # s between two looks for subscribers
+LATE = 0.02  # s behind its time at which a message is worth a word
+
+SETTINGS = (
+    Setting("input", "", "recording to play: a rosbag2 folder, or an .mcap or .db3 file", live=False),
+    Setting("topics", ("*",), "topics to play, named as recorded; * and ? stand for any letters", live=False),
+    Setting("rate", 1.0, "seconds of the recording that pass in one second", "", 1e-3, 1e3, live=False),
+    Setting("start_offset", 0.0, "time to skip at the start; latched topics come all the same", "s", 0.0, live=False),
+    Setting("loop", False, "begin again at the end", live=False),
+    Setting("publish_clock", False, "send the recorded time on /clock", live=False),
+    Setting("wait", 3.0, "longest wait for a subscriber to every topic before the start", "s", 0.0, 3600.0, live=False),
+)
+
+
+class Player(AxisNode):
+    """Plays the recording `input` and ends the process at its end, unless it is to `loop`."""
+
+    def __init__(self) -> None:
+        super().__init__("player", SETTINGS)
+        self.parameters.refuse_unknown()
+        if not self.parameters["input"]:
+            raise UsageError("no recording given; type: ros2 run pneumo_ros player --ros-args -p input:=FOLDER")
+        bag = Bag(Path(self.parameters["input"]).expanduser())
+        overview = bag.overview()
+        for sentence in bag.warnings:
+            self.get_logger().warning(sentence)
+        self._check(overview)
+        self._clock_output = self.create_publisher(Clock, CLOCK, 10) if self.parameters["publish_clock"] else None
+        self._outputs = Outputs(self, [overview.channels[topic] for topic in self._chosen(bag.path, overview)])
+        self._playback = Playback(
+            bag, overview, self._outputs.__contains__, self.parameters["rate"], self.parameters["start_offset"]
+        )
+        self._duration = (overview.end - overview.start) * 1e-9
+        self._rounds = 0
+        self._thread = threading.Thread(target=self._play, name="playback")
+
+    def start(self) -> None:
+        """Begin to play."""
+        topics = len(self._outputs.names)
+        self.get_logger().info(f"playing {self.parameters['input']}: {self._duration:.1f} s of {topics} topics")
+        self._thread.start()
+
+    def health(self) -> Health:
+        """Where in the recording it is, and how punctual."""
+        playback = self._playback
+        late = playback.behind * 1e-9
+        values = {
+            "position_s": (playback.position - playback.begin) * 1e-9 + self.parameters["start_offset"],
+            "duration_s": self._duration,
+            "rounds": self._rounds,
+            "messages": playback.sent,
+            "latest_message_late_s": late,
+        }
+        return Health(values, [f"a message came {late:.3f} s late"] if late > LATE else [])
+
+    def finish(self) -> None:
+        """Stop playing."""
+        self._playback.stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        late = self._playback.behind * 1e-6
+        self.get_logger().info(f"played {self._playback.sent} messages, none more than {late:.1f} ms late")
+
+    def _play(self) -> None:
+        """The thread that plays: waits for subscribers, plays once or for ever, ends the process."""
+        try:
+            self._await_subscribers()
+            while not self._playback.stop.is_set():
+                self._playback.play(self._send, self._tick if self._clock_output else None)
+                self._rounds += 1
+                if not self.parameters["loop"]:
+                    break
+            self._outputs.flush()
+            self.end()
+        except Exception as failure:  # told by the main thread
+            self.fail(failure)
+
+    def _await_subscribers(self) -> None:
+        """Discovery takes its time, and who is not found yet misses the first messages."""
+        deadline = time.monotonic() + self.parameters["wait"]
+        while time.monotonic() < deadline and not self._outputs.heard():
+            if self._playback.stop.wait(POLL):
+                return
+
+    def _send(self, message: Message) -> None:
+        self._outputs.send(message.channel.topic, message.payload)
+
+    def _tick(self, recorded: int) -> None:
+        if self._clock_output:
+            self._clock_output.publish(Clock(clock=Time(nanoseconds=recorded).to_msg()))
+
+    def _check(self, overview: Overview) -> None:
+        """Raises UsageError when nothing would be left to play."""
+        offset, duration = self.parameters["start_offset"], (overview.end - overview.start) * 1e-9
+        if offset > duration:
+            raise UsageError(f"start_offset is {offset:g} s, but the recording lasts {duration:.3f} s")
+
+    def _chosen(self, path: Path, overview: Overview) -> list[str]:
+        """Recorded topics that match the parameter `topics`. Raises DataError for one that matches none."""
+        chosen: set[str] = set()
+        for pattern in self.parameters["topics"]:
+            matching = {name for name in overview.channels if fnmatchcase(name.lstrip("/"), pattern.lstrip("/"))}
+            if not matching:
+                raise DataError(f"{path}: {unknown_name('topic', pattern, overview.channels)}")
+            chosen |= matching
+        if self.parameters["publish_clock"]:
+            chosen.discard(CLOCK)  # there can be one clock only
+        return sorted(chosen)
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the player; returns the exit code of the process."""
+    given = parse("player", "Play a recording as live topics.", SETTINGS, args)
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    return run(lambda: [Player()], "player", given.ros)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,138 @@
+"""The recorder node: topics into a rosbag2 folder, as bytes, nothing lost, whole at any time."""
+
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from rclpy.qos import ReliabilityPolicy
+
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.records import BagTopic, BagWriter
+from pneumo_ros.records.contract import TYPES
+from pneumo_ros.ros.arguments import parse
+from pneumo_ros.ros.diagnostics import Health
+from pneumo_ros.ros.intake import Intake, Taken, latches
+from pneumo_ros.ros.message_classes import definition
+from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.run import run
+from pneumo_ros.ros.selection import Selection
+from pneumo_ros.ros.setting import Setting
+
+TAKE = 0.005  # s between two looks into the queues
+DISCOVER = 0.2  # s between two looks at the publishers
+
+SETTINGS = (
+    Setting("output", "", "folder to make; none: recording_ and the time, in the current folder", live=False),
+    Setting(
+        "topics", (*TYPES, "/diagnostics"),
+        "topics to record, of the node's namespace unless they start with /; * and ? stand for any letters", live=False,
+    ),
+)  # fmt: skip
+
+
+class Recorder(AxisNode):
+    """Records the topics its parameter `topics` selects, from its start to its end."""
+
+    def __init__(self) -> None:
+        super().__init__("recorder", SETTINGS)
+        self.parameters.refuse_unknown()
+        self._selection = Selection(self, self.parameters["topics"])
+        output = self.parameters["output"] or time.strftime("recording_%Y_%m_%d-%H_%M_%S")
+        self._writer = BagWriter(Path(output).expanduser())
+        self._lock = threading.Lock()  # the end comes from another thread than the callbacks
+        self._ended = False
+        self._held: list[Taken] = []
+        self._began = time.monotonic()
+        self._intake = Intake(self)
+        for topic, (kind, latched) in self._selection.known.items():
+            self._intake.subscribe(topic, kind, latched)
+        self.create_timer(TAKE, self._take, clock=self.steady_clock)
+        self.create_timer(DISCOVER, self._discover, clock=self.steady_clock)
+        self.get_logger().info(f"recording to {self._writer.path}")
+
+    def health(self) -> Health:
+        """Counts of messages recorded and lost."""
+        counts = self._writer.counts
+        lost = dict(self._intake.lost)
+        values = {
+            "output": self._writer.path,
+            "messages": sum(counts.values()),
+            "topics": len(counts),
+            "lost_messages": sum(lost.values()),
+        }
+        warnings = [_lost(lost)] if lost else []
+        if not counts:
+            warnings.append("nothing to record yet: no publisher of any of its topics")
+        return Health({**values, **{f"lost_on {topic}": number for topic, number in lost.items()}}, warnings)
+
+    def finish(self) -> None:
+        """Record what has arrived, close the bag, and say what is in it."""
+        with self._lock:
+            if self._ended:
+                return
+            self._ended = True
+            self._store(self._held + self._intake.take())
+            self._writer.close()
+        counts, lost = self._writer.counts, self._intake.lost
+        self._intake.close()
+        self.get_logger().info(
+            f"recorded {sum(counts.values())} messages on {len(counts)} topics to {self._writer.path} "
+            f"in {time.monotonic() - self._began:.1f} s; {_lost(lost) if lost else 'nothing lost'}"
+        )
+
+    def _take(self) -> None:
+        """Fetch what has arrived, and record what nothing earlier can follow.
+
+        Readers of a bag whose recorder was killed want its messages in the order of time. Messages of this round may
+        still be overtaken by some of a topic that was looked at before; those of the round before cannot.
+        """
+        with self._lock:
+            if self._ended:
+                return
+            fresh = self._intake.take()
+            last = max((one.received for one in self._held), default=None)
+            ready = self._held + [one for one in fresh if last is not None and one.received <= last]
+            self._held = [one for one in fresh if last is None or one.received > last]
+            self._store(ready)
+
+    def _store(self, messages: list[Taken]) -> None:
+        """Write messages in the order of time. A bag that cannot be written ends the node."""
+        try:
+            for one in sorted(messages, key=lambda one: one.received):
+                if one.topic not in self._writer.counts:
+                    self._writer.add_topic(self._describe(one.topic))
+                self._writer.write(one.topic, one.received, one.payload, one.published)
+            self._writer.flush_if_due()
+        except PneumoError as error:
+            self._ended = True
+            self.fail(error)
+
+    def _describe(self, topic: str) -> BagTopic:
+        """How `topic` is recorded: with its type as installed here, and as its publishers offer it."""
+        kind = self._intake.types[topic]
+        offered = [one.qos_profile for one in self.get_publishers_info_by_topic(topic)]
+        reliable = all(one.reliability != ReliabilityPolicy.BEST_EFFORT for one in offered)
+        return BagTopic(topic, kind, bool(offered) and all(map(latches, offered)), reliable, definition(kind))
+
+    def _discover(self) -> None:
+        """Subscribe to selected topics that have come up."""
+        for topic, kind, latched in self._selection.appeared(self._intake.types):
+            self._intake.subscribe(topic, kind, latched)
+        self._intake.relax()
+
+
+def _lost(lost: dict[str, int]) -> str:
+    """Losses in words."""
+    return "lost " + ", ".join(f"{number} on {topic}" for topic, number in lost.items())
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the recorder; returns the exit code of the process."""
+    given = parse("recorder", "Record topics into a rosbag2 folder (MCAP).", SETTINGS, args)
+    return run(lambda: [Recorder()], "recorder", given.ros)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
