@@ -13,12 +13,13 @@ def main() -> int:
     return run(lambda: [Recorder()], "recorder")
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.ros.diagnostics import Diagnostics, Health
@@ -29,13 +30,18 @@ from pneumo_ros.ros.setting import Setting
 class AxisNode(Node):
     """Base of the nodes: `parameters`, 1 Hz `/diagnostics` from `health`, `start` and `finish` for subclasses."""
 
-    def __init__(self, name: str, settings: Iterable[Setting]) -> None:
-        """Declare `settings`; raises UsageError for a given value of wrong type or out of range."""
+    def __init__(self, name: str, settings: Iterable[Setting], simulated_time: bool | None = None) -> None:
+        """Declare `settings`; `simulated_time` decides on use_sim_time, whatever was given for it.
+
+        Raises UsageError for a given value of wrong type or out of range.
+        """
+        decided = [] if simulated_time is None else [Parameter("use_sim_time", value=simulated_time)]
         try:
-            super().__init__(name, automatically_declare_parameters_from_overrides=True)
+            super().__init__(name, automatically_declare_parameters_from_overrides=True, parameter_overrides=decided)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             raise UsageError(str(error)) from error
         self.failure: Exception | None = None  # what ended this node; `run` tells it
+        self.end: Callable[[], None] = lambda: None  # asks for the end of the process; `run` says how
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.parameters = Parameters(self)
         self.parameters.declare(settings)
@@ -47,6 +53,11 @@ class AxisNode(Node):
 
     def start(self) -> None:
         """Called once, when callbacks are being served."""
+
+    def fail(self, failure: Exception) -> None:
+        """End the process because of `failure`; from any thread."""
+        self.failure = failure
+        self.end()
 
     def finish(self) -> None:
         """Called once before the end, while callbacks are still served and topics still work."""

@@ -75,6 +75,11 @@ class Parameters:
     def __contains__(self, name: str) -> bool:
         return name in self._settings
 
+    @property
+    def uses_simulated_time(self) -> bool:
+        """Whether the node's clock is /clock."""
+        return bool(self._node.get_parameter("use_sim_time").value)
+
     def values(self) -> dict[str, Any]:
         """All values by name."""
         return {name: self._node.get_parameter(name).value for name in self._settings}

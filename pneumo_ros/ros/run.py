@@ -104,10 +104,11 @@ def _live(make: Callable[[], Sequence[AxisNode]], stop: threading.Event) -> None
         nodes = make()
         spinner = Spinner(nodes, stop.set)
         with spinner:
-            for node in nodes:
-                node.start()
             gc.collect()
             gc.freeze()  # what exists now stays; collections under way then take microseconds
+            for node in nodes:
+                node.end = stop.set
+                node.start()
             stop.wait()
             for node in nodes:
                 node.finish()

@@ -1,0 +1,10 @@
+"""Control laws, references and the lockstep closed loop: pure Python, shared by node, simulation and benchmarks."""
+
+from pneumo_ros.control.closed_loop import Record, closed_loop
+from pneumo_ros.control.gain import Gain
+from pneumo_ros.control.law import Law
+from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.pid import Pid
+from pneumo_ros.control.valve import ValveInverse
+
+__all__ = ["Gain", "Law", "Measurement", "Pid", "Record", "ValveInverse", "closed_loop"]

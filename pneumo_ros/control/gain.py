@@ -1,0 +1,37 @@
+"""A number of a control law that may be tuned: default, unit, meaning and range."""
+
+import math
+from dataclasses import dataclass
+from typing import overload
+
+from pneumo_ros.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Default value in `unit`, meaning, and the closed range of allowed values.
+
+    As an attribute of a class it is itself; read from an instance it is that instance's value, a float.
+    """
+
+    default: float
+    unit: str
+    meaning: str
+    low: float
+    high: float
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> "Gain": ...
+    @overload
+    def __get__(self, instance: object, owner: type) -> float: ...
+    def __get__(self, instance: object | None, owner: type) -> "Gain | float":
+        # without __set__, a value stored in the instance hides this: it is reached only before one is
+        return self if instance is None else self.default
+
+    def check(self, name: str, value: object) -> float:
+        """Return value as float; UsageError when it is no number, not finite, or out of range."""
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            number = float(value)
+            if math.isfinite(number) and self.low <= number <= self.high:
+                return number
+        raise UsageError(f"gain {name} is {value!r}; allowed is {self.low:g} to {self.high:g} {self.unit}")

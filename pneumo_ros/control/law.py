@@ -1,0 +1,51 @@
+"""The interface of a control law: gains as class attributes, one `step` per measurement."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import ClassVar
+
+from pneumo_ros.control.gain import Gain
+from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.valve import ValveInverse
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+
+
+class Law(ABC):
+    """A control law. Subclasses declare their gains as class attributes and read them as `self.<gain>`.
+
+    `valve` turns the wanted opening of the valve into its voltage; both it and the gains may change between steps.
+    """
+
+    gains: ClassVar[Mapping[str, Gain]] = {}
+
+    def __init_subclass__(cls) -> None:
+        cls.gains = MappingProxyType({name: value for name, value in vars(cls).items() if isinstance(value, Gain)})
+
+    def __init__(self, gains: Mapping[str, float] | None = None, valve: ValveInverse | None = None) -> None:
+        """Take `gains` by name, defaults for the others; raises UsageError as `tune` does."""
+        self.valve = valve or ValveInverse()
+        self.tune({name: gain.default for name, gain in self.gains.items()} | dict(gains or {}))
+        self.reset()
+
+    def tune(self, gains: Mapping[str, float]) -> None:
+        """Change gains, all of them or, with UsageError and the nearest names, none. States stay as they are."""
+        checked = {}
+        for name, value in gains.items():
+            if name not in self.gains:
+                raise UsageError(unknown_name("gain", name, self.gains))
+            checked[name] = self.gains[name].check(name, value)
+        for name, value in checked.items():
+            setattr(self, name, value)
+
+    @abstractmethod
+    def step(self, reference: float, measurement: Measurement) -> float:
+        """Voltage [V] that drives the position to `reference` [m]; call once per measurement, in order of time.
+
+        A measurement no later than the one before is a repetition and gets the same answer.
+        """
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Forget everything but the gains."""

@@ -1,0 +1,38 @@
+"""`ros2 run pneumo_ros axis`: simulator and controller in one process, the fastest lockstep.
+
+They are the same nodes with the same topics; in one process their messages need not wait for the operating system.
+"""
+
+import sys
+from collections.abc import Sequence
+
+from pneumo_ros.ros.arguments import parse
+from pneumo_ros.ros.controller import settings as controller_settings
+from pneumo_ros.ros.controller.node import Controller
+from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.run import run
+from pneumo_ros.ros.simulator import settings as simulator_settings
+from pneumo_ros.ros.simulator.entry import SWITCH_INTERVAL
+from pneumo_ros.ros.simulator.node import Simulator
+
+_SIMULATORS = [*simulator_settings.FIXED, *simulator_settings.LIVE]
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run both nodes; returns the exit code of the process."""
+    settings = {setting.name: setting for setting in (*_SIMULATORS, *controller_settings.SETTINGS)}
+    given = parse("axis", "Simulate and control the pneumatic axis.", settings.values(), args, effects=True)
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    return run(lambda: _nodes(given.effects), "axis", given.ros)
+
+
+def _nodes(effects_files: Sequence[str]) -> list[AxisNode]:
+    """Both nodes; each leaves alone what is the other's among the parameters that both are given."""
+    theirs = {setting.name for setting in controller_settings.SETTINGS}
+    simulator = Simulator(effects_files, lambda name: name in theirs and not name.startswith("dead_zone."))
+    clock = simulator.simulated_clock  # a pause of the plant is no silence, and /clock would halve the speed
+    return [simulator, Controller(lambda name: name in simulator.parameters, clock)]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,7 @@
+"""`python -m pneumo_ros.ros.controller`."""
+
+import sys
+
+from pneumo_ros.ros.controller.entry import main
+
+sys.exit(main())

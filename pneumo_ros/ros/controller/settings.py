@@ -1,0 +1,84 @@
+"""Parameters of the controller, and what they mean for law, valve and reference."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pneumo_ros.control import Law, Pid, ValveInverse
+from pneumo_ros.control.reference import Reference, constant, sine, steps
+from pneumo_ros.plant.library import FRAME
+from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.setting import Setting
+
+LAWS: Mapping[str, type[Law]] = {"pid": Pid}
+SHAPES = ("topic", "constant", "steps", "sine")
+_DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
+
+_OWN = (
+    Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
+    Setting("law", "pid", "control law", live=False, choices=tuple(LAWS)),
+    Setting("measurement_timeout", 0.1, "age of the last measurement at which 0 V is sent", "s", 0.001, 60.0),
+    Setting("max_voltage", 10.0, "limit of the command", "V", 0.0, 100.0),
+)
+_VALVE = (
+    # names as in the machine file, which may be given as it is
+    Setting("dead_zone.right_limit", 0.78, "voltage at which port a begins to fill", "V", 0.0, 10.0),
+    Setting("dead_zone.left_limit", 0.78, "magnitude of the voltage at which port a begins to empty", "V", 0.0, 10.0),
+    Setting("dead_zone.right_slope", 1.0, "slope beyond the right limit", "V/V", 0.01, 100.0),
+    Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
+    Setting("valve.smoothing", 0.02, "opening by which the jump across the dead zone is complete", "V", 0.0, 10.0),
+)
+_REFERENCE = (
+    Setting("reference.shape", "topic", "where the reference comes from; topic: position/reference", choices=SHAPES),
+    Setting("reference.position", 0.0, "reference of shape constant", "m", -100.0, 100.0),
+    Setting("reference.levels", [0.0, 0.06], "references of shape steps, one after the other", "m", -100.0, 100.0),
+    Setting("reference.hold", 8.0, "time each of the levels is held", "s", 0.001, 1e6),
+    Setting("reference.offset", 0.0, "middle of the sine", "m", -100.0, 100.0),
+    Setting("reference.amplitude", 0.3, "amplitude of the sine", "m", -100.0, 100.0),
+    Setting("reference.frequency", 0.05, "frequency of the sine", "Hz", 0.0, 100.0),
+)
+_GAINS = tuple(
+    Setting(f"{law}.{name}", gain.default, gain.meaning, gain.unit, gain.low, gain.high)
+    for law, kind in LAWS.items()
+    for name, gain in kind.gains.items()
+)
+SETTINGS = (*_OWN, *_REFERENCE, *_VALVE, *_GAINS)
+
+
+def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
+    """Gains of the law of that name among all parameters."""
+    return {name: values[f"{law}.{name}"] for name in LAWS[law].gains}
+
+
+def valve_of(values: Mapping[str, Any]) -> ValveInverse:
+    """The inverse of the valve; UsageError if the values are no valve."""
+    dead_zone = {name: values[f"dead_zone.{name}"] for name in _DEAD_ZONE}
+    return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
+
+
+def reference_of(values: Mapping[str, Any]) -> Reference | None:
+    """The reference that the parameters describe, None if it comes from the topic; UsageError for bad values."""
+    shape = values["reference.shape"]
+    if shape == "constant":
+        return constant(values["reference.position"])
+    if shape == "steps":
+        return steps(list(values["reference.levels"]), values["reference.hold"])
+    if shape == "sine":
+        return sine(values["reference.amplitude"], values["reference.frequency"], values["reference.offset"])
+    return None
+
+
+def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
+    """Names that a machine file brought along and that are not for the controller."""
+    effects = given.get("effects")
+    if effects is None:
+        return set()
+    sections = {*FRAME, *effects}
+    return {name for name in given if name == "effects" or name.partition(".")[0] in sections}
+
+
+def without_dead_zone(given: Mapping[str, Any]) -> dict[str, float]:
+    """Limits for a machine file that lists no dead zone: its valve opens at once."""
+    effects = given.get("effects")
+    if effects is None or "dead_zone" in effects:
+        return {}
+    return {"dead_zone.right_limit": 0.0, "dead_zone.left_limit": 0.0}

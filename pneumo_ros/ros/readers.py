@@ -1,0 +1,100 @@
+"""Numbers out of received bytes: at 1 kHz, building the objects of a message costs more than all that is done with it.
+
+CDR as in OMG formal/02-06-51, section 9.3: four bytes of encapsulation, then little-endian numbers, aligned to their
+size from there; a string or sequence is its length and its elements. Any other encapsulation goes through rclpy.
+"""
+
+import struct
+from typing import NamedTuple
+
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import FluidPressure, JointState
+from std_msgs.msg import Float64
+
+_PLAIN = b"\x00\x01"  # encapsulation of little-endian CDR
+_COUNT, _NUMBER, _STAMP = struct.Struct("<I"), struct.Struct("<d"), struct.Struct("<iI")
+_START = 12  # after encapsulation and stamp: the length of header.frame_id
+
+
+class JointSample(NamedTuple):
+    """What a joint state says of one joint: stamp [ns], position [m], velocity [m/s] if there is one."""
+
+    stamp: int
+    position: float
+    velocity: float | None
+
+
+def number(data: bytes) -> float:
+    """The number of a std_msgs/Float64."""
+    if data[:2] != _PLAIN:
+        return float(deserialize_message(data, Float64).data)
+    return float(_NUMBER.unpack_from(data, 4)[0])
+
+
+def pressure(data: bytes) -> float:
+    """The pressure [Pa] of a sensor_msgs/FluidPressure."""
+    if data[:2] != _PLAIN:
+        return float(deserialize_message(data, FluidPressure).fluid_pressure)
+    (length,) = _COUNT.unpack_from(data, _START)
+    return float(_NUMBER.unpack_from(data, _aligned(_START + 4 + length, 8))[0])
+
+
+class JointReader:
+    """Reads one joint, by name, from joint states; a message laid out like the last one is read at the same places."""
+
+    def __init__(self, joint: str) -> None:
+        """Look for `joint`."""
+        self._joint = joint
+        self._length, self._fixed, self._after = -1, b"", b""
+        self._begin = self._end = self._position = self._velocity = 0
+
+    def read(self, data: bytes) -> JointSample | None:
+        """The joint's sample of a sensor_msgs/JointState; None if it holds no position of that joint."""
+        if data[:2] != _PLAIN:
+            return self._of_message(deserialize_message(data, JointState))
+        if not self._as_before(data) and not self._learn(data):
+            return None
+        seconds, nanoseconds = _STAMP.unpack_from(data, 4)
+        (position,) = _NUMBER.unpack_from(data, self._position)
+        velocity = _NUMBER.unpack_from(data, self._velocity)[0] if self._velocity else None
+        return JointSample(seconds * 1_000_000_000 + nanoseconds, position, velocity)
+
+    def names(self, data: bytes) -> list[str]:
+        """Names of all joints of a message."""
+        return list(deserialize_message(data, JointState).name)
+
+    def _as_before(self, data: bytes) -> bool:
+        """Whether all lengths and strings that decide the places are those of the last message."""
+        return (
+            len(data) == self._length
+            and data[_START : self._begin] == self._fixed
+            and data[self._end : self._end + 4] == self._after
+        )
+
+    def _learn(self, data: bytes) -> bool:
+        message = deserialize_message(data, JointState)
+        if self._joint not in message.name or message.name.index(self._joint) >= len(message.position):
+            return False
+        index, positions = message.name.index(self._joint), len(message.position)
+        at = _aligned(_START + 4 + _COUNT.unpack_from(data, _START)[0], 4) + 4
+        for name in message.name:
+            at = _aligned(at, 4) + 4 + len(name.encode()) + 1
+        self._begin = _aligned(_aligned(at, 4) + 4, 8)
+        self._end = self._begin + 8 * positions
+        self._position = self._begin + 8 * index
+        self._velocity = _aligned(self._end + 4, 8) + 8 * index if index < len(message.velocity) else 0
+        self._length, self._fixed, self._after = len(data), data[_START : self._begin], data[self._end : self._end + 4]
+        return True
+
+    def _of_message(self, message: JointState) -> JointSample | None:
+        names, stamp = list(message.name), message.header.stamp
+        if self._joint not in names or names.index(self._joint) >= len(message.position):
+            return None
+        index = names.index(self._joint)
+        velocity = message.velocity[index] if index < len(message.velocity) else None
+        return JointSample(stamp.sec * 1_000_000_000 + stamp.nanosec, message.position[index], velocity)
+
+
+def _aligned(offset: int, size: int) -> int:
+    """The next multiple of `size`, counted from the end of the encapsulation."""
+    return 4 + (offset - 4 + size - 1) // size * size

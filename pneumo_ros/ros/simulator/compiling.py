@@ -1,0 +1,67 @@
+"""Compiling the kernel of a new composition while the old one runs on."""
+
+import json
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from pneumo_ros.plant import Model, Stepper
+
+# Numba holds the interpreter for most of its seconds; another process fills the kernel cache, from which loading takes
+# milliseconds.
+_PROGRAM = """
+import json, sys
+from pneumo_ros.plant import Library, Stepper, model_from_dict
+given = json.load(sys.stdin)
+model = model_from_dict(given["model"], "model", Library(given["files"]))
+Stepper(model, model.state())
+"""
+
+
+class Compiler:
+    """Compiles models one after the other in a thread and a process of its own; only the last one asked for counts."""
+
+    def __init__(self, files: Iterable[str | Path], done: Callable[[Model, Exception | None], None]) -> None:
+        """`files` are the user's effect files; `done` is called in the thread with a model whose kernel is at hand,
+        or with the reason why there is none.
+        """
+        self._files, self._done = [str(path) for path in files], done
+        self._wanted: Model | None = None
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a kernel is being compiled."""
+        return self._thread is not None
+
+    def compile(self, model: Model) -> None:
+        """Begin; returns at once."""
+        with self._lock:
+            self._wanted = model
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name="compiler", daemon=True)
+                self._thread.start()
+
+    def _work(self) -> None:
+        while True:
+            with self._lock:
+                model, self._wanted = self._wanted, None
+                if model is None:
+                    self._thread = None
+                    return
+            failure = self._compile(model)
+            if self._wanted is None:
+                self._done(model, failure)
+
+    def _compile(self, model: Model) -> Exception | None:
+        given = json.dumps({"model": model.as_dict(), "files": self._files})
+        # a failure there is met again, and told, when the kernel is loaded here
+        subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
+        try:
+            Stepper(model, model.state())
+        except Exception as failure:  # of numba, about the text of a user's effect: no class to name here
+            return failure
+        return None

@@ -1,0 +1,18 @@
+"""Command line of the simulator."""
+
+import sys
+from collections.abc import Sequence
+
+from pneumo_ros.ros.arguments import parse
+from pneumo_ros.ros.run import run
+from pneumo_ros.ros.simulator.node import Simulator
+from pneumo_ros.ros.simulator.settings import FIXED, LIVE
+
+SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let a busy callback make the next tick late
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the simulator; returns the exit code of the process."""
+    given = parse("simulator", "Simulate the pneumatic axis as a ROS 2 node.", [*FIXED, *LIVE], args, effects=True)
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    return run(lambda: [Simulator(given.effects)], "simulator", given.ros)

@@ -1,0 +1,112 @@
+"""As fast as possible, in step with the controller: every measurement waits for its command."""
+
+import time
+from collections.abc import Callable
+
+from pneumo_ros.ros.node import AxisNode
+
+SETTLE = 0.3  # s after both sides are matched here until they are so at the controller, too
+WATCH = 0.05  # s
+
+
+class Lockstep:
+    """Runs `send` (publish the present sample) and `advance` (one sample) in turns with the commands.
+
+    Everything happens in callbacks of the executor: a command causes the next sample. Without a controller the plant
+    runs on freely. A command that does not come within the timeout is counted, said, and not waited for.
+    """
+
+    def __init__(
+        self,
+        node: AxisNode,
+        advance: Callable[[], bool],
+        send: Callable[[], None],
+        matched: Callable[[], bool],
+        *,
+        wait: float,
+        timeout: float,
+    ) -> None:
+        """`advance` returns whether the plant moved (it does not while paused); times in s of the wall."""
+        self._node, self._advance, self._send, self._matched = node, advance, send, matched
+        self._wait, self._timeout = wait, timeout
+        self.started = self.closed = self._awaiting = False
+        self.answered = self.timeouts = 0
+        self._since = self._begin = time.monotonic()
+        self._met: float | None = None
+        node.create_timer(WATCH, self._watch, clock=node.steady_clock)
+
+    def command(self) -> None:
+        """A command has come, good or refused: it answers the measurement that waits for one."""
+        if self._awaiting:
+            self._awaiting = False
+            self.answered += 1
+            self._go_on()
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self.started and not self._awaiting:
+            self._soon()
+
+    def _go_on(self) -> None:
+        if not self._awaiting and self._advance():
+            self.publish()
+
+    def _soon(self) -> None:
+        """Go on after whatever else waits to be served."""
+        self._node.executor.create_task(self._go_on)
+
+    def publish(self) -> None:
+        """Send the present sample and wait for its command, if somebody will send one."""
+        self._awaiting, self._since = self.closed, time.monotonic()
+        self._send()
+        if not self._awaiting:
+            self._soon()
+
+    def _watch(self) -> None:
+        if not self.started:
+            self._start_when_met()
+            return
+        self._follow_match()
+        if self._awaiting and time.monotonic() - self._since > self._timeout:
+            self._miss()
+
+    def _start_when_met(self) -> None:
+        now = time.monotonic()
+        if not self._matched():
+            self._met = None
+            if now - self._begin > self._wait:
+                self._node.get_logger().warning(
+                    f"no controller within {self._wait:g} s (parameter lockstep_wait); the plant runs open loop"
+                )
+                self._start(closed=False)
+        elif self._met is None:
+            self._met = now
+        elif now - self._met > SETTLE:
+            self._start(closed=True)
+
+    def _start(self, closed: bool) -> None:
+        self.started, self.closed = True, closed
+        self.publish()
+
+    def _follow_match(self) -> None:
+        matched = self._matched()
+        if matched == self.closed:
+            return
+        self.closed = matched
+        self._node.get_logger().info("controller joined" if matched else "controller left; the plant runs open loop")
+        if not matched and self._awaiting:
+            self._awaiting = False
+            self._soon()
+
+    def _miss(self) -> None:
+        self._awaiting = False
+        self.timeouts += 1
+        self._node.get_logger().warning(
+            f"no command within {self._timeout:g} s (parameter lockstep_timeout), {self.timeouts} so far",
+            throttle_duration_sec=5.0,
+        )
+        # Before the first answer the measurement itself may have been lost on its way; later, time must go on.
+        if self.answered == 0 and time.monotonic() - self._begin < self._wait:
+            self.publish()
+        else:
+            self._soon()

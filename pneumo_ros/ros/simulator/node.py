@@ -1,0 +1,158 @@
+"""The simulator: the plant as a node."""
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from std_msgs.msg import Float64
+
+from pneumo_ros.errors import NumericalError
+from pneumo_ros.records.contract import COMMAND
+from pneumo_ros.ros import readers
+from pneumo_ros.ros.description import Description, describe
+from pneumo_ros.ros.diagnostics import Health
+from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.peers import loop_closed
+from pneumo_ros.ros.qos import SUBSCRIBE
+from pneumo_ros.ros.simulator.health import Monitor
+from pneumo_ros.ros.simulator.lockstep import Lockstep
+from pneumo_ros.ros.simulator.machine import machine_from_parameters
+from pneumo_ros.ros.simulator.outlet import Outlet
+from pneumo_ros.ros.simulator.sensors import Sensors
+from pneumo_ros.ros.simulator.services import Services
+from pneumo_ros.ros.simulator.settings import EFFECTS, FIXED, LIVE, effects_setting, machine_settings
+from pneumo_ros.ros.simulator.simulation import Simulation
+from pneumo_ros.ros.simulator.stamps import WallStamps
+from pneumo_ros.ros.simulator.tuning import Tuning, initial_state
+from pneumo_ros.ros.simulator.valve_input import ValveInput
+from pneumo_ros.ros.ticker import Ticker
+
+
+class Simulator(AxisNode):
+    """Steps the machine in real time or in lockstep, takes `valve/command`, sends what the sensors see."""
+
+    def __init__(
+        self, effects_files: Iterable[str | Path] = (), tolerated: Callable[[str], bool] = lambda name: False
+    ) -> None:
+        """Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, or a bad value."""
+        super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it makes that time itself
+        files = tuple(effects_files)
+        self.lock = threading.Lock()
+        self.paused = False
+        self.fault: str | None = None
+        self.simulation = self._build(files, tolerated)
+        self._simulated_time = self.parameters["publish_clock"] or self.parameters["real_time_factor"] != 1.0
+        self.outlet = Outlet(self, self.parameters["joint_name"], self._simulated_time)
+        self._stamps = WallStamps()
+        self._description = Description(self, self._describe)
+        self._tuning = Tuning(self.parameters, self.simulation, self.lock, self.get_logger(), self._changed, files)
+        self._service_calls = Services(self)
+        self._commands = self.create_subscription(Float64, COMMAND, self._command, SUBSCRIBE, raw=True)
+        factor = self.parameters["real_time_factor"]
+        self._period = 1e9 / self.simulation.rate / (factor or 1.0)  # ns of the wall
+        self.lockstep = self._make_lockstep() if factor == 0.0 else None
+        self._ticker = None if self.lockstep else self._make_ticker()
+        self._monitor = Monitor(self.simulation, self._ticker or self.lockstep)
+
+    # --- construction -----------------------------------------------------------------------------------------------
+
+    def _build(self, files: tuple[str | Path, ...], tolerated: Callable[[str], bool]) -> Simulation:
+        values = self.parameters
+        values.refuse_unknown(lambda name: tolerated(name) or "." in name or name == EFFECTS)
+        given = {name: value for name, value in values.given.items() if not tolerated(name)}
+        model = machine_from_parameters(values["model"], given, files)
+        values.declare([effects_setting(model), *machine_settings(model, list(model.parameters))])
+        model.state(**initial_state(values.values()))
+        for sentence in model.cautions():
+            self.get_logger().warning(sentence)
+        valve = ValveInput(values["max_voltage"], values["command_timeout"])
+        sensors = Sensors(seed=values["seed"])
+        return Simulation(model, valve, sensors, rate=values["publish_rate"], step=values["step"])
+
+    def _make_ticker(self) -> Ticker:
+        return Ticker(self._period, self._tick, self.fail)
+
+    def _make_lockstep(self) -> Lockstep:
+        return Lockstep(
+            self,
+            lambda: not self.paused and self._advance(0, 1.0),
+            self._send,
+            lambda: loop_closed(self, self.outlet.joint_states, self._commands),
+            wait=self.parameters["lockstep_wait"],
+            timeout=self.parameters["lockstep_timeout"],
+        )
+
+    # --- life -------------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin at the initial state."""
+        self.simulation.reset()
+        if self._ticker:
+            self._ticker.start()
+
+    def finish(self) -> None:
+        """Stop the plant."""
+        self.paused = True
+        if self._ticker:
+            self._ticker.stop()
+
+    def simulated_clock(self) -> int:
+        """Simulated time [ns]."""
+        return self.simulation.clock
+
+    def single_step(self) -> None:
+        """One sample while paused; with the lock held."""
+        now = time.monotonic_ns()
+        if self.lockstep:
+            if self._advance(0, 1.0):
+                self.lockstep.publish()
+        elif self._advance(round(now - self._period), self._period / self.simulation.parts):
+            self._send(now)
+
+    def _tick(self, deadline: int) -> None:
+        """The sample that ends at `deadline` [ns, CLOCK_MONOTONIC] is over: find out what happened in it."""
+        begin, part = round(deadline - self._period), self._period / self.simulation.parts
+        with self.lock:
+            if not self.paused and self._advance(begin, part):
+                self._send(deadline)
+
+    def _advance(self, begin: int, part: float) -> bool:
+        """One sample, see `Simulation.advance`; False, and a pause, if the state left the finite numbers."""
+        try:
+            self.simulation.advance(begin, part)
+        except NumericalError as error:
+            self.fault, self.paused = str(error), True
+            self.get_logger().error(f"{error}; paused")
+        return self.fault is None
+
+    def _send(self, moment: int = 0) -> None:
+        """Send the present sample, stamped with simulated time or the wall's time of `moment` [ns, CLOCK_MONOTONIC]."""
+        stamp = self.simulation.clock if self._simulated_time else self._stamps.at(moment)
+        self.outlet.send(self.simulation, stamp)
+
+    def _command(self, message: bytes) -> None:
+        arrival = 0 if self.lockstep else time.monotonic_ns()
+        valve, voltage = self.simulation.valve, readers.number(message)
+        clipped = valve.clipped
+        if not valve.accept(voltage, arrival):
+            self.get_logger().warning(f"valve command {voltage} refused", throttle_duration_sec=5.0)
+        elif valve.clipped > clipped:
+            self.get_logger().warning(
+                f"valve command {voltage:g} V clipped to {valve.max_voltage:g} V", throttle_duration_sec=5.0
+            )
+        if self.lockstep:
+            self.lockstep.command()
+
+    # --- what it says -----------------------------------------------------------------------------------------------
+
+    def health(self) -> Health:
+        """Rates, counts and warnings; see `Monitor`."""
+        return self._monitor.look(self.paused, self.fault, self._tuning.compiler.busy)
+
+    def _changed(self) -> None:
+        self.outlet.velocity = self.parameters["publish_velocity"]
+        self._description.publish()
+
+    def _describe(self) -> dict[str, object]:
+        return describe(self.simulation.model.as_dict(), self.parameters["seed"])

@@ -1,0 +1,43 @@
+"""Sends a sample: both pressures, then the joint state, so that whoever waits for the latter has all; then /clock."""
+
+from collections.abc import Callable
+
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import FluidPressure, JointState
+
+from pneumo_ros.records.contract import JOINT_STATES, PRESSURE_A, PRESSURE_B
+from pneumo_ros.ros import messages
+from pneumo_ros.ros.qos import PUBLISH
+from pneumo_ros.ros.simulator.simulation import Simulation
+
+
+class Outlet:
+    """The publishers of the plant's sensors."""
+
+    def __init__(self, node: Node, joint: str, clock: bool) -> None:
+        """Name of the joint; whether to send /clock."""
+        self.joint_states = node.create_publisher(JointState, JOINT_STATES, PUBLISH)
+        self._pressure_a = node.create_publisher(FluidPressure, PRESSURE_A, PUBLISH)
+        self._pressure_b = node.create_publisher(FluidPressure, PRESSURE_B, PUBLISH)
+        self._clock = node.create_publisher(Clock, "/clock", PUBLISH) if clock else None
+        self._time = messages.clock()
+        self._a, self._b = messages.pressure("chamber_a"), messages.pressure("chamber_b")
+        self._joint, self._joint_without_velocity = messages.joint_state(joint), messages.joint_state(joint, False)
+        self.velocity = True
+
+    def send(self, simulation: Simulation, stamp: int) -> None:
+        """Send the present reading with `stamp` [ns]."""
+        reading, variance = simulation.reading, simulation.sensors.pressure_variance
+        if self._clock:
+            self._clock.publish(self._time.fill(stamp))
+        self._pressure_a.publish(self._a.fill(stamp, reading.pressure_a, variance))
+        self._pressure_b.publish(self._b.fill(stamp, reading.pressure_b, variance))
+        self.joint_states.publish(self._fill(stamp, reading.position, reading.velocity, simulation.effort))
+
+    @property
+    def _fill(self) -> Callable[..., bytes]:
+        return self._joint.fill if self.velocity else self._without
+
+    def _without(self, stamp: int, position: float, velocity: float, effort: float) -> bytes:
+        return self._joint_without_velocity.fill(stamp, position, effort)

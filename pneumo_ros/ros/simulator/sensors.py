@@ -1,0 +1,60 @@
+"""What the sensors make of the state: noise of a given seed, and quantisation."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+_BLOCK = 4096  # draws at a time: one draw per sample would cost more than the kernel
+
+
+class Reading(NamedTuple):
+    """One sample of all sensors: m, m/s, Pa abs."""
+
+    position: float
+    velocity: float
+    pressure_a: float
+    pressure_b: float
+
+
+@dataclass
+class Sensors:
+    """Gaussian noise (standard deviations [m], [Pa]) and quantisation (steps [m], [Pa], 0: none).
+
+    Every reading uses up the same number of draws, so that a change of one level does not change the others' noise.
+    """
+
+    noise_position: float = 0.0
+    noise_pressure: float = 0.0
+    quantisation_position: float = 0.0
+    quantisation_pressure: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin the noise of the seed anew."""
+        self._random = np.random.Generator(np.random.PCG64(self.seed))
+        self._draws: list[list[float]] = []
+
+    def read(self, true: Reading) -> Reading:
+        """The reading of a true state; the velocity is passed on as it is."""
+        if not self._draws:
+            self._draws = self._random.standard_normal((_BLOCK, 3)).tolist()
+        e_y, e_a, e_b = self._draws.pop()
+        return Reading(
+            _rounded(true.position + self.noise_position * e_y, self.quantisation_position),
+            true.velocity,
+            _rounded(true.pressure_a + self.noise_pressure * e_a, self.quantisation_pressure),
+            _rounded(true.pressure_b + self.noise_pressure * e_b, self.quantisation_pressure),
+        )
+
+    @property
+    def pressure_variance(self) -> float:
+        """Variance of a pressure [Pa2]: noise, and the uniform error of rounding."""
+        return self.noise_pressure**2 + self.quantisation_pressure**2 / 12.0
+
+
+def _rounded(value: float, step: float) -> float:
+    return round(value / step) * step if step > 0.0 else value
