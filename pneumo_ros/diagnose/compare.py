@@ -1,46 +1,49 @@
-"""Model against measurement: prediction errors per run and signal, and residuals per equation."""
+"""Model against measurement: prediction errors per run and signal, residuals per equation, and where they sit."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.diagnose.along import Along, along
+from pneumo_ros.diagnose.dependence import Dependence, dependences
+from pneumo_ros.diagnose.locate import (
+    MOMENTUM_FLOOR,
+    Located,
+    equation_errors,
+    locate,
+    on_grid,
+    signal_errors,
+    window_of,
+)
+from pneumo_ros.diagnose.regimes import Mask, regimes
+from pneumo_ros.diagnose.shares import Share, by_regime, pooled
+from pneumo_ros.diagnose.sliding import FrictionPoints, friction_map
+from pneumo_ros.diagnose.verdicts import EquationVerdict, SignalError, judge_equations, judge_signal, root_mean_square
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.weak import Residual, equation_residuals
 from pneumo_ros.identify.windows import free_run, predict
 from pneumo_ros.plant import Model
 
+__all__ = [
+    "MOMENTUM_FLOOR", "Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run",
+    "judge_equations",
+]  # fmt: skip
+
 Array = NDArray[np.float64]
-
-SCHEMA_VERSION = 1
-_EXPLAINED = 1.2  # times the noise: what estimating the noise from the same recording leaves uncertain, generously
-# N: friction along a measured motion is known no better than this, because its velocity is an estimate; measured on
-# recordings of the true machine, 0.05 to 0.06 N at 10 um position noise
-MOMENTUM_FLOOR = 0.06
-
-
-@dataclass(frozen=True)
-class SignalError:
-    """Error of one signal over all windows of a run, in the signal's unit."""
-
-    rms: float
-    max: float
-    fit_percent: float  # 100 (1 - |error| / |measured - its mean|)
-    noise: float
-
-    @property
-    def ratio(self) -> float:
-        """Error over noise floor: 1 where only noise is left."""
-        return self.rms / self.noise
 
 
 @dataclass(frozen=True)
 class RunComparison:
-    """What compare says of one run: by signal name, windowed errors and the rms [unit] of one free simulation."""
+    """What compare says of one run: by signal name, windowed errors and the rms [unit] of one free simulation.
+
+    located: by signal and equation name, the parts of the error by regime and its worst intervals. predicted and
+    free_errors: model minus measurement on the run's grid (n,), NaN where there is none, in single precision.
+    """
 
     name: str
     samples: int
@@ -49,44 +52,38 @@ class RunComparison:
     error: dict[str, SignalError]
     free: dict[str, float]
     residuals: dict[str, Residual] = field(repr=False)
+    course: Along = field(repr=False)
+    masks: dict[str, Mask] = field(repr=False)
+    located: dict[str, Located] = field(repr=False)
+    predicted: dict[str, NDArray[np.float32]] = field(repr=False)
+    free_errors: dict[str, NDArray[np.float32]] = field(repr=False)
 
-
-@dataclass(frozen=True)
-class EquationVerdict:
-    """One equation over all runs."""
-
-    residual_rms: float
-    unit: str
-    ratio_to_noise: float
-    explained_by_noise: bool
+    @cached_property
+    def equations(self) -> dict[str, EquationVerdict]:
+        """The equations in this run alone."""
+        return judge_equations([self.residuals])
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A model against any number of runs."""
+    """A model against any number of runs.
+
+    regimes: by signal and equation name, the parts of the error over all runs; dependences: by equation and variable.
+    """
 
     model: str
     horizon: float
     runs: tuple[RunComparison, ...]
     equations: dict[str, EquationVerdict]
+    regimes: dict[str, dict[str, Share]]
+    dependences: dict[str, dict[str, Dependence]]
+    friction: dict[str, FrictionPoints]
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON of `pneumo compare`; where a simulation left the finite numbers, so do its errors."""
-        return {
-            "schema_version": SCHEMA_VERSION,
-            "model": self.model,
-            "horizon_s": self.horizon,
-            "runs": [_run_dict(run) for run in self.runs],
-            "equations": {
-                name: {
-                    "explained_by_noise": verdict.explained_by_noise,
-                    "residual_rms": verdict.residual_rms,
-                    "unit": verdict.unit,
-                    "ratio_to_noise": verdict.ratio_to_noise,
-                }
-                for name, verdict in self.equations.items()
-            },
-        }
+        from pneumo_ros.diagnose.compare_json import comparison_dict
+
+        return comparison_dict(self)
 
 
 def compare(
@@ -101,57 +98,46 @@ def compare(
         if progress:
             progress(i / len(runs), run.name)
         results.append(compare_run(model, run, horizon))
-    return Comparison(model.name, horizon, tuple(results), judge_equations([r.residuals for r in results]))
+    names = results[0].located if results else {}
+    courses = [r.course for r in results]
+    return Comparison(
+        model=model.name,
+        horizon=horizon,
+        runs=tuple(results),
+        equations=judge_equations([r.residuals for r in results]),
+        regimes={name: by_regime(pooled([r.located[name].errors for r in results])) for name in names},
+        dependences={
+            name: dependences([r.residuals[name] for r in results], courses, window_of(name))
+            for name in (results[0].residuals if results else {})
+        },
+        friction=friction_map(model, courses) if results else {},
+    )
 
 
 def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
-    """Windowed and free errors and the residuals of one run."""
+    """Windowed and free errors and the residuals of one run, and where they sit."""
     noise = run_noise(run)
-    windows = predict(model, run, horizon)
+    windows, free = predict(model, run, horizon), free_run(model, run)
     rows = windows.start[:, None] + np.arange(1, windows.states.shape[1] + 1)
-    errors = {
-        name: _signal_error(error, run.signals[name][rows], noise[name]) for name, error in windows.errors.items()
-    }
-    free = {name: _rms(error) for name, error in free_run(model, run).errors.items()}
-    residuals = equation_residuals(model, run)
-    return RunComparison(run.name, len(run), float(run.time[-1]), len(windows.start), errors, free, residuals)
+    predicted, course = on_grid(windows, len(run)), along(model, run)
+    masks, residuals = regimes(course), equation_residuals(model, run)
+    errors = signal_errors(run, predicted, noise, masks) | equation_errors(residuals, run, masks)
+    return RunComparison(
+        name=run.name,
+        samples=len(run),
+        duration=float(run.time[-1]),
+        windows=len(windows.start),
+        error={name: judge_signal(e, run.signals[name][rows], noise[name]) for name, e in windows.errors.items()},
+        free={name: root_mean_square(error) for name, error in free.errors.items()},
+        residuals=residuals,
+        course=course,
+        masks=masks,
+        located={name: locate(found) for name, found in errors.items()},
+        predicted=_single(predicted),
+        free_errors=_single(on_grid(free, len(run))),
+    )
 
 
-def judge_equations(residuals: Sequence[dict[str, Residual]]) -> dict[str, EquationVerdict]:
-    """Pool the residuals of several runs, equation by equation."""
-    return {name: _judge(name, [found[name] for found in residuals]) for name in (residuals[0] if residuals else {})}
-
-
-def _judge(name: str, parts: list[Residual]) -> EquationVerdict:
-    value, noise = (np.concatenate([getattr(part, which) for part in parts]) for which in ("value", "noise"))
-    floor = MOMENTUM_FLOOR if name == "momentum" else 0.0
-    ratio = _rms(value / np.hypot(noise, floor)) if len(value) else math.nan
-    return EquationVerdict(_rms(value), parts[0].unit, ratio, bool(ratio <= _EXPLAINED))
-
-
-def _signal_error(error: Array, measured: Array, noise: float) -> SignalError:
-    spread = float(np.std(measured))
-    rms = _rms(error)
-    fit = 100.0 * (1.0 - rms / spread) if spread > 0.0 else math.nan
-    return SignalError(rms, float(np.nanmax(np.abs(error))), fit, noise)
-
-
-def _rms(values: Array) -> float:
-    with np.errstate(over="ignore", invalid="ignore"):
-        return float(np.sqrt(np.nanmean(np.square(values)))) if np.size(values) else math.nan
-
-
-def _run_dict(run: RunComparison) -> dict[str, Any]:
-    return {
-        "name": run.name,
-        "samples": run.samples,
-        "duration_s": run.duration,
-        "windows": run.windows,
-        "error": {
-            name: {
-                "rms": e.rms, "max": e.max, "fit_percent": e.fit_percent, "noise": e.noise,
-            }
-            for name, e in run.error.items()
-        },
-        "free_run": {name: {"rms": rms} for name, rms in run.free.items()},
-    }  # fmt: skip
+def _single(errors: dict[str, Array]) -> dict[str, NDArray[np.float32]]:
+    with np.errstate(over="ignore"):
+        return {name: error.astype(np.float32) for name, error in errors.items()}

@@ -1,0 +1,71 @@
+"""Verdicts: whether the sensor noise alone explains an error."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.locate import noise_of
+from pneumo_ros.identify.weak import Residual
+
+Array = NDArray[np.float64]
+
+_EXPLAINED = 1.2  # times the noise: what estimating the noise from the same recording leaves uncertain, generously
+_SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
+
+
+@dataclass(frozen=True)
+class SignalError:
+    """Error of one signal over all windows of a run, in the signal's unit."""
+
+    rms: float
+    max: float
+    fit_percent: float  # 100 (1 - |error| / |measured - its mean|)
+    noise: float
+
+    @property
+    def ratio(self) -> float:
+        """Error over noise floor: 1 where only noise is left."""
+        return self.rms / self.noise
+
+    @property
+    def explained_by_noise(self) -> bool:
+        """Whether noise alone explains the error."""
+        return bool(self.ratio <= _SIGNAL_EXPLAINED)
+
+
+@dataclass(frozen=True)
+class EquationVerdict:
+    """One equation over all runs."""
+
+    residual_rms: float
+    unit: str
+    ratio_to_noise: float
+    explained_by_noise: bool
+
+
+def judge_equations(residuals: Sequence[dict[str, Residual]]) -> dict[str, EquationVerdict]:
+    """Pool the residuals of several runs, equation by equation."""
+    return {name: _judge([found[name] for found in residuals]) for name in (residuals[0] if residuals else {})}
+
+
+def _judge(parts: list[Residual]) -> EquationVerdict:
+    value, noise = (np.concatenate(found) for found in ([p.value for p in parts], [noise_of(p) for p in parts]))
+    ratio = root_mean_square(value / noise) if len(value) else math.nan
+    return EquationVerdict(root_mean_square(value), parts[0].unit, ratio, bool(ratio <= _EXPLAINED))
+
+
+def judge_signal(error: Array, measured: Array, noise: float) -> SignalError:
+    """Judge prediction errors beside what was measured at the same samples, both of one shape and unit."""
+    spread = float(np.std(measured))
+    rms = root_mean_square(error)
+    fit = 100.0 * (1.0 - rms / spread) if spread > 0.0 else math.nan
+    return SignalError(rms, float(np.nanmax(np.abs(error))), fit, noise)
+
+
+def root_mean_square(values: Array) -> float:
+    """Of the values that are there; NaN when there are none."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.sqrt(np.nanmean(np.square(values)))) if np.size(values) else math.nan

@@ -1,0 +1,68 @@
+"""What signals, equations, regimes and variables are called, and numbers as people read them. Plain Python only."""
+
+import math
+
+# name in reports -> words, unit shown, factor from SI
+SIGNALS = {
+    "position_m": ("position", "mm", 1e3),
+    "pressure_a_pa": ("pressure a", "kPa", 1e-3),
+    "pressure_b_pa": ("pressure b", "kPa", 1e-3),
+}
+EQUATIONS = {
+    "momentum": ("momentum", "N", 1.0),
+    "chamber_a": ("chamber a", "g/s", 1e3),
+    "chamber_b": ("chamber b", "g/s", 1e3),
+}
+TARGETS = SIGNALS | EQUATIONS
+REGIMES = {
+    "stick": "stick",
+    "breakaway": "breakaway",
+    "slide": "slide",
+    "reversal": "reversal",
+    "near_end_stop": "near the end stops",
+    "filling_a": "filling a",
+    "exhausting_a": "exhausting a",
+    "filling_b": "filling b",
+    "exhausting_b": "exhausting b",
+    "valve_near_null": "valve near null",
+}
+VARIABLES = {
+    "velocity": ("velocity", "m/s", 1.0),
+    "position": ("position", "m", 1.0),
+    "voltage": ("voltage", "V", 1.0),
+    "force": ("driving force", "N", 1.0),
+    "pressure_a": ("pressure a", "bar", 1e-5),
+    "pressure_b": ("pressure b", "bar", 1e-5),
+    "pressure_difference": ("pressure a - b", "bar", 1e-5),
+    "time": ("time", "s", 1.0),
+}
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number of `digits` significant digits, without exponent where it stays short; a dash for none."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-4 <= abs(value) < 1e6:
+        text = f"{value:.{max(digits - 1 - math.floor(math.log10(abs(value))), 0)}f}"
+    return text
+
+
+def amount(value: float | None, target: str) -> str:
+    """A value in SI units as people read it: 0.00034 of position_m is '0.34 mm'."""
+    _, unit, factor = TARGETS[target]
+    return "-" if value is None else f"{number(factor * value)} {unit}"
+
+
+def times(ratio: float | None) -> str:
+    """A ratio to the noise: '14 x', '1.2 x'."""
+    if ratio is None or not math.isfinite(ratio):
+        return "-"
+    return f"{ratio:.1f} x" if ratio < 9.95 else f"{number(ratio, 3 if ratio >= 100 else 2)} x"
+
+
+def percent(share: float | None) -> str:
+    """A share as whole per cent."""
+    if share is None or not math.isfinite(share):
+        return "-"
+    return f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "< 1 %"
