@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.noise import run_noise
-from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.identify.smooth import noise_gain, smooth
 from pneumo_ros.plant import Model
 
@@ -36,7 +36,11 @@ def smoothed(run: Run) -> Smoothed:
 
 
 def first_guess(model: Model, run: Run, at: Index) -> Array:
-    """States (len(at), states): measured ones smoothed, others driven along, bristles by balance of forces."""
+    """States (len(at), states): measured ones smoothed, others driven along, bristles by balance of forces.
+
+    Raises DataError when the run leaves the stroke of the model.
+    """
+    check_position(model, run)
     guess = smoothed(run)
     frame = guess.frame[:, : 2 if model.force_driven else 4]
     rest = model.state()[frame.shape[1] :]

@@ -6,12 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.plant import Model
 from pneumo_ros.records import Recording
 
 Array = NDArray[np.float64]
 
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
+_FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
+_VACUUM = 1e4  # Pa: no chamber of a pneumatic axis is emptier
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,12 @@ class Run:
         return np.asarray(self.input.reshape(-1, PARTS).mean(axis=1))
 
     @property
+    def force(self) -> Array:
+        """(n - 1,) driving force [N] at the samples; meaningful when force-driven, where it is linear in between."""
+        first, second = self.input[::PARTS], self.input[1::PARTS]
+        return np.asarray(1.5 * first - 0.5 * second)
+
+    @property
     def signals(self) -> dict[str, Array]:
         """The measured signals by their name in reports: position_m, pressure_a_pa and pressure_b_pa."""
         every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
@@ -50,12 +59,11 @@ class Run:
 def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
-    `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, or holds no
-    pressures or no input for the kind asked for.
+    `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, sampled too
+    slowly, or holds no pressures, no absolute ones or no input for the kind asked for.
     """
     time = recording.time
-    if len(time) < 50:
-        raise DataError(f"{recording.name} holds {len(time)} samples; at least 50 are needed")
+    _check_time(recording)
     driven = recording.force_driven if force_driven is None else force_driven
     _check_input(recording, driven)
     counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
@@ -83,6 +91,28 @@ def _array(signal: Array | None) -> Array:
     return signal
 
 
+def check_position(model: Model, run: Run) -> None:
+    """Raises DataError when a run leaves the stroke of `model` by more than a stop can give way."""
+    reach = 0.5 * model["piston.stroke"]
+    farthest = int(np.argmax(np.abs(run.position)))
+    if abs(run.position[farthest]) > 1.05 * reach:
+        raise DataError(
+            f"{run.name}: the position is {run.position[farthest]:.4g} m at {run.time[farthest]:.3f} s, outside the "
+            f"stroke of {model.name}, {-reach:g} to {reach:g} m; positions are in m from mid stroke, and the machine "
+            "file sets piston.stroke"
+        )
+
+
+def _check_time(recording: Recording) -> None:
+    if len(recording.time) < _FEWEST:
+        raise DataError(f"{recording.name} holds {len(recording.time)} samples; at least {_FEWEST} are needed")
+    if recording.sample_time > _SLOWEST:
+        raise DataError(
+            f"{recording.name} is sampled every {1e3 * recording.sample_time:.3g} ms; valve and friction act within "
+            f"milliseconds: record at {1.0 / _SLOWEST:g} Hz or more, better 1 kHz"
+        )
+
+
 def _check_input(recording: Recording, force_driven: bool) -> None:
     if force_driven and recording.effort is None:
         raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
@@ -90,6 +120,18 @@ def _check_input(recording: Recording, force_driven: bool) -> None:
         raise DataError(
             f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
             "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
+        )
+    if not force_driven:
+        _check_pressure(recording, "chamber_a/pressure", _array(recording.pressure_a))
+        _check_pressure(recording, "chamber_b/pressure", _array(recording.pressure_b))
+
+
+def _check_pressure(recording: Recording, topic: str, pressure: Array) -> None:
+    lowest = int(np.argmin(pressure))
+    if pressure[lowest] < _VACUUM:
+        raise DataError(
+            f"{recording.name}: {topic} is {pressure[lowest]:.4g} Pa at {recording.time[lowest]:.3f} s; absolute "
+            "pressures in Pa are needed: add the atmosphere's to gauge pressures, multiply bar by 1e5"
         )
 
 

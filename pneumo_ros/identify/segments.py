@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 PROBE = 1e-2  # scales: step of finite differences
+_WRONG = 1e9  # noise deviations: the most an error counts, so that its square stays a number
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class Segments:
         predicted = self.simulate(model, states, parameters, threads)[:, :, self.columns]
         predicted = predicted.reshape(copies, len(self), self.samples, -1)
         error = ((predicted - self.measured) * self.weight).reshape(copies, len(self), -1)
-        return np.asarray(np.nan_to_num(error, nan=1e6, posinf=1e6, neginf=-1e6))
+        return np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
 
 
 def cut(model: Model, runs: Sequence[Run], duration: float) -> Segments:

@@ -61,9 +61,9 @@ def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: 
     jacobian = np.moveaxis((_residuals(model, segments, segments.probes(x)) - residual) / PROBE, 0, 2)
     normal = np.swapaxes(jacobian, 1, 2) @ jacobian
     gradient = np.einsum("wrs,wr->ws", jacobian, residual)
-    diagonal = np.einsum("wss->ws", normal)
-    damped = normal + damping[:, None, None] * np.eye(x.shape[1]) * diagonal[:, None, :]
-    return np.asarray(-np.linalg.solve(damped, gradient[:, :, None])[:, :, 0] * segments.scale)
+    size = np.sqrt(np.einsum("wss->ws", normal))  # at least 1, by the prior
+    damped = normal / (size[:, :, None] * size[:, None, :]) + damping[:, None, None] * np.eye(x.shape[1])
+    return np.asarray(-np.linalg.solve(damped, (gradient / size)[:, :, None])[:, :, 0] / size * segments.scale)
 
 
 def _residuals(model: Model, segments: Segments, states: Array) -> Array:

@@ -33,8 +33,13 @@ def predict(model: Model, run: Run, horizon: float) -> Prediction:
 
     Raises UsageError when the run holds no such window.
     """
-    samples = round(horizon / run.sample_time)
-    starts = side_by_side(run, samples) if samples >= 2 else np.empty(0, dtype=np.int64)
+    samples = round(min(len(run), horizon / run.sample_time))
+    if samples < 2:
+        raise UsageError(
+            f"a horizon of {horizon:g} s holds no two samples of {run.name}, {run.sample_time:.3g} s apart; "
+            "give a longer --horizon"
+        )
+    starts = side_by_side(run, samples)
     if not len(starts):
         raise UsageError(
             f"{run.name} has no window of {horizon:g} s without a gap in its {run.time[-1]:.3g} s; "

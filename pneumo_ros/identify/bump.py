@@ -1,0 +1,56 @@
+"""The test function of weak forms: a smooth bump that vanishes, with its derivatives, at the ends of its window."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Bump:
+    """phi(t) = (1 - tau^2)^6 on a window of `width` samples; sums of a signal with these weights are means over it.
+
+    phi, first, second (width,): weights of phi and of its first [1/s] and second [1/s2] derivative in time.
+    """
+
+    width: int
+    phi: Array
+    first: Array
+    second: Array
+
+    @classmethod
+    def of(cls, duration: float, sample_time: float) -> "Bump":
+        """A bump over `duration` [s], nine samples at least."""
+        half = max(round(0.5 * duration / sample_time), 4)
+        tau = np.arange(-half, half + 1) / half
+        span, c = half * sample_time, 1.0 - tau**2
+        phi = c**6 / np.sum(c**6)
+        first = -tau * c**5
+        first /= -np.sum(first * tau) * span  # exact for a constant rate, however few the samples
+        second = (-12.0 * c**5 + 120.0 * tau**2 * c**4) / (span**2 * np.sum(c**6))
+        second -= np.sum(second) * phi  # exact for a constant
+        return cls(2 * half + 1, phi, first, second)
+
+    def coarseness(self, factor: float) -> float:
+        """Error of sums in place of integrals and of simulated friction, as a share of the integrand."""
+        return factor / (self.width - 1) ** 2 + 1e-5
+
+    def apply(self, weights: Array, signal: Array) -> Array:
+        """Weighted sums (windows,) of a signal (n,) over windows a quarter of their width apart; none if n < width."""
+        return self._windows(signal) @ weights
+
+    def _windows(self, signal: Array) -> Array:
+        if len(signal) < self.width:
+            return np.empty((0, self.width))
+        every = np.lib.stride_tricks.sliding_window_view(signal, self.width)
+        return np.asarray(every[:: max(self.width // 4, 1)])
+
+    def noise(self, terms: list[tuple[Array, Array]]) -> Array:
+        """Standard deviation (windows,) of a residual that unit white noise enters by the sum over `terms`.
+
+        Each term is weights (width,) and a signal (n,), by which the noise of each sample is multiplied.
+        """
+        gain = sum(weights * self._windows(signal) for weights, signal in terms)
+        return np.asarray(np.sqrt(np.sum(np.square(gain), axis=1)))
