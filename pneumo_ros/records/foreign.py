@@ -1,14 +1,12 @@
 """Storage that is left to rosbags: sqlite3, and folders whose files or messages are compressed one by one."""
 
-import sqlite3
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-import apsw
 import numpy as np
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinitionFormat, QosDurability
-from rosbags.rosbag2 import Reader, ReaderError
+from rosbags.rosbag2 import Reader
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records.block import Block, Channel
@@ -38,7 +36,9 @@ class ForeignBag:
                 messages = reader.messages()
                 while batch := list(islice(messages, BATCH)):
                     yield self._block(batch)
-        except (ReaderError, OSError, apsw.Error, sqlite3.Error) as error:
+        except DataError:
+            raise
+        except Exception as error:  # rosbags lets through what the database's own library raises
             raise DataError(f"Cannot read {self.path}: {error}") from error
 
     def _block(self, batch: list[tuple[Connection, int, bytes]]) -> Block:

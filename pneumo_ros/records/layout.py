@@ -17,12 +17,12 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.records.message_types import ENCAPSULATION
 
 NUMBERS = {
     "bool": "?", "byte": "i1", "char": "u1", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4",
     "uint32": "u4", "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8",
 }  # fmt: skip
-ENCAPSULATION = 4
 
 
 class Leaf(NamedTuple):
@@ -74,7 +74,10 @@ class Layout:
     """Offsets of the numbers, and the bytes every message of this layout has in common."""
 
     def __init__(self, payload: bytes, fields: list[Leaf]) -> None:
-        """Learn from one message; `fields` hold no arrays of messages. Raises ValueError when it does not fit them."""
+        """Learn from one message; `fields` hold no arrays of messages. Raises ValueError when it does not fit them.
+
+        Stray bytes at its end, which ROS's own serialisation may leave, do not matter.
+        """
         self.length = len(payload)
         self.texts: dict[str, Any] = {}
         self._payload = payload
@@ -85,8 +88,6 @@ class Layout:
         names: list[tuple[str, str, tuple[int, ...], int]] = []
         for field in fields:
             names += self._text(field) if field.base == "string" else self._number(field)
-        if not self._position <= self.length <= self._position + 3:
-            raise ValueError(f"{self.length} bytes instead of {self._position}")
         self.dtype = np.dtype(
             {
                 "names": [name for name, _, _, _ in names],

@@ -3,10 +3,10 @@
 The definitions, their text form and the RIHS01 hash come from rosbags.
 """
 
+import struct
 from functools import lru_cache
 from typing import Any
 
-from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
@@ -15,6 +15,7 @@ from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Channel
 
+ENCAPSULATION = 4  # bytes before a message that tell its byte order
 _IDL_PART = "=" * 80 + "\nIDL: "
 
 
@@ -97,20 +98,23 @@ def serialize(content: Any) -> bytes:
 
 def deserialize(store: Typestore, payload: bytes, message_type: str) -> Any:
     """Message object of CDR bytes. Raises DataError when they do not fit the type."""
+    return _decoded(store, payload, message_type)[0]
+
+
+def trimmed(payload: bytes, message_type: str) -> bytes:
+    """A standard type's message without what follows it: ROS's own serialisation may leave stray bytes at the end."""
+    return payload[: _decoded(standard_types(), payload, message_type)[1]]
+
+
+def _decoded(store: Typestore, payload: bytes, message_type: str) -> tuple[Any, int]:
+    """Message object, and the number of bytes it takes."""
+    if len(payload) < ENCAPSULATION or payload[:2] not in (b"\0\0", b"\0\1"):
+        raise DataError(f"A message of type {message_type} is not plain CDR.")
     try:
-        return store.deserialize_cdr(payload, message_type)
-    except (SerdeError, KeyError) as error:
+        kind = store.get_msgdef(message_type)
+        # Not `store.deserialize_cdr`, which refuses the stray bytes.
+        decode = kind.deserialize_cdr_le if payload[1] else kind.deserialize_cdr_be
+        message, size = decode(memoryview(payload)[ENCAPSULATION:], 0, kind.cls, store)
+    except (SerdeError, KeyError, ValueError, struct.error) as error:
         raise DataError(f"A message does not fit its type {message_type}: {error}") from error
-
-
-__all__ = [
-    "Nodetype",
-    "Typestore",
-    "channel_types",
-    "definition_of",
-    "deserialize",
-    "message",
-    "serialize",
-    "standard_types",
-    "types_of",
-]
+    return message, ENCAPSULATION + size

@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from rosbags.typesys.store import Typestore
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.bag import Bag
 from pneumo_ros.records.block import Block, Channel, Integers, gather
 from pneumo_ros.records.layout import Layout, Leaf, leaves
-from pneumo_ros.records.message_types import Typestore, channel_types, deserialize
+from pneumo_ros.records.message_types import channel_types, deserialize
 
 MOST_LAYOUTS = 64  # of one topic; beyond, its messages are deserialized one by one
 

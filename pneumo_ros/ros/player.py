@@ -25,6 +25,7 @@ from pneumo_ros.ros.setting import Setting
 CLOCK = "/clock"
 SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let reading ahead delay a message
 POLL = 0.02  # s between two looks for subscribers
+SETTLE = 0.3  # s; a subscriber finds its publisher later than it is found
 LATE = 0.02  # s behind its time at which a message is worth a word
 
 SETTINGS = (
@@ -102,11 +103,13 @@ class Player(AxisNode):
             self.fail(failure)
 
     def _await_subscribers(self) -> None:
-        """Discovery takes its time, and who is not found yet misses the first messages."""
+        """Discovery takes its time, and who has not found this node yet misses the first messages."""
         deadline = time.monotonic() + self.parameters["wait"]
-        while time.monotonic() < deadline and not self._outputs.heard():
-            if self._playback.stop.wait(POLL):
+        while time.monotonic() < deadline and not self._playback.stop.is_set():
+            if self._outputs.heard():
+                self._playback.stop.wait(SETTLE)
                 return
+            self._playback.stop.wait(POLL)
 
     def _send(self, message: Message) -> None:
         self._outputs.send(message.channel.topic, message.payload)

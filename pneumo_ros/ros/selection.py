@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping
 from fnmatch import fnmatchcase
 
-from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 
 from pneumo_ros.errors import UsageError
@@ -55,7 +54,7 @@ def resolve(node: Node, name: str) -> str:
         return name if name.startswith("/") else f"{node.get_namespace().rstrip('/')}/{name}"
     try:
         return str(node.resolve_topic_name(name))
-    except (InvalidTopicNameException, ValueError) as error:
+    except RuntimeError as error:  # RCLError is no class of rclpy's public modules
         raise UsageError(f"'{name}' cannot be the name of a topic: {error}") from error
 
 

@@ -34,9 +34,9 @@ def test_bags_read_the_same_by_rosbags_and_here(tmp_path: Path) -> None:
     found = by_rosbags(tmp_path / "bag")
     assert {name: len(rows) for name, rows in found.items()} == dict.fromkeys(CONTRACT, 200)
     assert_same(read_topics(tmp_path / "bag"), found)
-    stored = [(m.channel.topic, m.channel.type, m.log_time, m.payload) for m in Bag(tmp_path / "bag").messages()]
-    assert stored == messages
-    assert Bag(tmp_path / "bag").warnings == []
+    bag = Bag(tmp_path / "bag")
+    assert [(m.channel.topic, m.channel.type, m.log_time, m.payload) for m in bag.messages()] == messages
+    assert bag.warnings == []
 
 
 def test_metadata_says_what_rosbag2_wants_to_know(tmp_path: Path) -> None:

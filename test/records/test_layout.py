@@ -63,8 +63,9 @@ def test_padding_does_not_matter() -> None:
 def test_every_byte_of_a_bulk_message_is_accounted_for(kind: str, little_endian: bool) -> None:
     for seed in range(20):
         payload = serialized(random_message(kind, np.random.default_rng(seed)), little_endian)
-        Layout(payload, leaves(STORE, kind))
-        for broken in (payload[:-4], payload + bytes(4), b"\0\3" + payload[2:], payload[:4]):
+        layout = Layout(payload, leaves(STORE, kind))
+        assert Layout(payload + b"stray", leaves(STORE, kind)).texts == layout.texts
+        for broken in (payload[:-4], b"\0\3" + payload[2:], payload[:4]):
             with pytest.raises(ValueError, match=r"bytes|CDR|string"):
                 Layout(broken, leaves(STORE, kind))
 

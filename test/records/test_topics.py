@@ -10,6 +10,7 @@ from records.making import START, STORE, assert_same, by_rosbags, interleaved, r
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import read_topics, topics
 from pneumo_ros.records.contract import GLOBAL_TYPES, TYPES
+from pneumo_ros.records.message_types import trimmed
 from pneumo_ros.records.topics import MOST_LAYOUTS
 
 CONTRACT = {f"/axis/{name}": kind for name, kind in TYPES.items()} | GLOBAL_TYPES
@@ -117,6 +118,15 @@ def test_topics_can_be_chosen_and_misspelt(tmp_path: Path) -> None:
         read_topics(path, ["/axis/valve/comand"])
     with pytest.raises(DataError, match="did you mean position"):
         read_topics(path)["/axis/joint_states"]["positon"]
+
+
+@pytest.mark.parametrize("kind", ["sensor_msgs/msg/JointState", "trajectory_msgs/msg/JointTrajectory"])
+def test_stray_bytes_at_the_end_of_messages(tmp_path: Path, kind: str) -> None:
+    messages = interleaved({"/x": kind}, 50)
+    stray = [(topic, kind, time, data + b"stray bytes") for topic, kind, time, data in messages]
+    expected = by_rosbags(write_rosbags(tmp_path / "clean", messages))
+    assert_same(read_topics(write_rosbags(tmp_path / "stray", stray)), expected)
+    assert [trimmed(data, kind) for _, _, _, data in stray] == [data for _, _, _, data in messages]
 
 
 def test_a_message_that_is_none_of_its_type(tmp_path: Path) -> None:
