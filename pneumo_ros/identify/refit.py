@@ -1,8 +1,8 @@
 """Refit of a whole model to recordings by multiple shooting (Bock 1983).
 
 Every run is cut into segments whose initial states are free; each segment is simulated from its own start, and all
-starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. The
-starts are eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all
+starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. Then
+the few segments that fit far worse than the rest, breakaways caught in the wrong moment, are left out once. The starts are eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all
 perturbed simulations of one iteration run as lanes.
 """
 
@@ -11,19 +11,23 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import t as student
 
 from pneumo_ros.errors import DataError, NumericalError, UsageError
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.segments import PROBE, Segments, cut
+from pneumo_ros.identify.start import fit_starts
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 SEGMENT = 0.5  # s
-HUBER = 4.0  # noise deviations: beyond, errors count linearly
+TAIL = 4.0  # noise deviations: beyond, errors count less than squared
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
-_ITERATIONS, _ENOUGH = 25, 1e-4
+OUTLYING = 4.0  # times the median loss of a segment
+_ITERATIONS, _ENOUGH = 20, 0.05  # of one descent: steps, and gain in cost (half a squared deviation) worth another
+_ROUNDS, _WORTH = 6, 2.0  # rounds, and gain of a round worth another
 _RESAMPLES = 400
 
 # What a scale, a ruler or a table tells better than a motion: fixed unless asked for.
@@ -56,6 +60,8 @@ class Refit:
     estimates: dict[str, Estimate]
     correlation: Array  # (free, free)
     costs: tuple[float, ...]
+    segments: int
+    left_out: int  # segments that fit far worse than the rest
 
 
 def default_free(model: Model) -> tuple[str, ...]:
@@ -79,20 +85,29 @@ def refit(
 
     `priors` maps dotted names to standard deviations in the parameter's unit (default 5 % of the value, or of the
     parameter's default where the value is 0). `segment` [s] is the length of the shooting segments. Raises UsageError
-    for unknown names, DataError when no run holds a segment, NumericalError when no step lowers the cost at all.
+    for unknown names, DataError when no run holds a segment, NumericalError when no prediction is finite.
     """
     names = default_free(model) if free is None else tuple(free)
-    start = np.array([model[name] for name in names])
-    known = [
-        (priors or {}).get(name, PRIOR * max(abs(model[name]), abs(model.specification(name).default)))
-        for name in names
-    ]
-    prior = np.array(known)
-    if not names or not (prior > 0.0).all():
+    return refit_segments(model, cut(model, runs, segment), names, priors or {}, threads=threads, progress=progress)
+
+
+def refit_segments(
+    model: Model,
+    segments: Segments,
+    free: Sequence[str],
+    priors: Mapping[str, float],
+    *,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Refit:
+    """Refit `free` parameters to the given segments; otherwise as `refit`."""
+    size = {name: max(abs(model[name]), abs(model.specification(name).default)) for name in free}
+    prior = np.array([priors.get(name, PRIOR * size[name]) for name in free])
+    if not free or not (prior > 0.0).all():
         raise UsageError("a refit needs at least one free parameter, and priors above zero")
-    problem = _Problem(model, names, prior, cut(model, runs, segment), threads)
+    problem = _Problem(model, tuple(free), prior, segments, threads)
     theta, costs = problem.solve(progress or (lambda share, text: None))
-    return problem.result(theta, start, costs)
+    return problem.result(theta, costs)
 
 
 class _Problem:
@@ -106,7 +121,8 @@ class _Problem:
         self.base = np.array([model[name] for name in names])
         specs = [model.specification(name) for name in names]
         self.low, self.high = np.array([s.low for s in specs]), np.array([s.high for s in specs])
-        self.threads = threads
+        self.threads, self.round = threads, 0
+        self.active = np.ones(len(segments), dtype=bool)
 
     def _parameters(self, theta: Array) -> Array:
         """Parameter vectors (..., parameters) for values (..., free)."""
@@ -134,15 +150,14 @@ class _Problem:
         return moved[..., :n], moved[..., n:]
 
     def _cost(self, residuals: Array, states: Array, theta: Array) -> float:
-        size = np.abs(residuals)
-        robust = np.where(size < HUBER, 0.5 * size**2, HUBER * (size - 0.5 * HUBER))
         start, moved = self.segments.from_guess(states), (theta - self.base) / self.prior
-        return float(np.sum(robust) + 0.5 * np.sum(start**2) + 0.5 * np.sum(moved**2))
+        each = np.sum(_loss(residuals), axis=1) + 0.5 * np.sum(start[0] ** 2, axis=1)
+        return float(np.sum(each[self.active]) + 0.5 * np.sum(moved**2))
 
     def _blocks(self, states: Array, theta: Array, residuals: Array) -> tuple[Array, ...]:
         """Normal equations segment by segment: parameters (S, p, p), cross (S, p, n), starts (S, n, n), gradients."""
         by_state, by_theta = self._jacobian(states, theta, residuals)
-        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-300))[..., None]
+        weight = (_weight(residuals) * self.active[:, None])[..., None]
         state_t, theta_t = (np.swapaxes(part * weight, 1, 2) for part in (by_state, by_theta))
         n = states.shape[1]
         start = self.segments.from_guess(states)[0]
@@ -160,31 +175,64 @@ class _Problem:
         return np.where(theta + steps > self.high, -steps, steps)
 
     def solve(self, progress: Progress) -> tuple[Array, list[float]]:
-        """Levenberg-Marquardt; returns the parameters and the cost after each iteration."""
-        states, theta, damping = self.segments.guess.copy(), self.base.copy(), 1e-3
-        residuals = self._residuals(states, theta)
+        """Rounds of Levenberg-Marquardt and of reseating starts, until neither helps; parameters and course of the cost.
+
+        A segment whose breakaway is predicted too early or too late sits in a valley of its own, which no descent
+        leaves: between rounds every segment's start is fitted afresh from its guess, and the better of both is kept.
+        """
+        states, theta = self.segments.guess.copy(), self.base.copy()
+        costs: list[float] = []
+        for self.round in range(_ROUNDS):
+            states, theta, course = self._descend(states, theta, progress)
+            gained = costs[-1] - course[-1] if costs else np.inf
+            costs += course
+            if gained < _WORTH:
+                break
+            states = self._reseat(states, theta)
+            self.active = ~self._outliers(states, theta)
+        if not np.isfinite(costs[-1]):
+            raise NumericalError("the refit found no finite prediction; check the recordings and the model first")
+        self.blocks = self._blocks(states, theta, self._residuals(states, theta))
+        progress(1.0, f"cost {costs[-1]:.4g}")
+        return theta, costs
+
+    def _reseat(self, states: Array, theta: Array) -> Array:
+        """The better start of each segment: the one at hand, or one fitted afresh from its guess."""
+        values = {name: float(v) for name, v in zip(self.names, theta, strict=True)}
+        fresh = fit_starts(self.model.with_parameters(values), self.segments)
+        here, there = (
+            np.sum(_loss(self._residuals(x, theta)), axis=1) + 0.5 * np.sum(self.segments.from_guess(x)[0] ** 2, axis=1)
+            for x in (states, fresh)
+        )
+        return np.where((there < here)[:, None], fresh, states)
+
+    def _outliers(self, states: Array, theta: Array) -> NDArray[np.bool_]:
+        """Segments whose loss is far above the median, the worst twentieth at most."""
+        each = np.sum(_loss(self._residuals(states, theta)), axis=1)
+        most = max(len(each) // 20, 1)
+        far = each > OUTLYING * np.median(each)
+        return np.asarray(far & (each >= np.sort(each)[-most]))
+
+    def _descend(self, states: Array, theta: Array, progress: Progress) -> tuple[Array, Array, list[float]]:
+        damping, residuals = 1e-3, self._residuals(states, theta)
         costs = [self._cost(residuals, states, theta)]
         for k in range(_ITERATIONS):
-            progress(k / _ITERATIONS, f"cost {costs[-1]:.4g}")
+            progress(1.0 - 0.5 ** (self.round + k / _ITERATIONS), f"cost {costs[-1]:.4g}")
             blocks = self._blocks(states, theta, residuals)
             while True:
                 new_states, new_theta = self._step(states, theta, blocks, damping)
                 tried = self._residuals(new_states, new_theta)
                 cost = self._cost(tried, new_states, new_theta)
-                if cost < costs[-1] or damping > 1e8:
+                if cost < costs[-1] or damping > 1e6:
                     break
                 damping *= 10.0
             if not cost < costs[-1]:
                 break
             states, theta, residuals, damping = new_states, new_theta, tried, max(damping * 0.1, 1e-9)
             costs.append(cost)
-            if costs[-2] - costs[-1] < _ENOUGH * costs[-1]:
+            if costs[-2] - costs[-1] < _ENOUGH:
                 break
-        if not np.isfinite(costs[-1]):
-            raise NumericalError("the refit found no finite prediction; check the recordings and the model first")
-        self.blocks = self._blocks(states, theta, residuals)
-        progress(1.0, f"cost {costs[-1]:.4g}")
-        return theta, costs
+        return states, theta, costs
 
     def _step(self, states: Array, theta: Array, blocks: tuple[Array, ...], damping: float) -> tuple[Array, Array]:
         A, B, C, g, h = blocks
@@ -197,11 +245,12 @@ class _Problem:
         limited = np.clip(theta + move * self.prior, self.low, self.high)
         return states + start_move * self.segments.scale, limited
 
-    def result(self, theta: Array, start: Array, costs: list[float]) -> Refit:
+    def result(self, theta: Array, costs: list[float]) -> Refit:
         """Estimates with deviations from a bootstrap over segments of the linearised problem."""
         reduced, gradient = _eliminate(*self.blocks)
+        reduced, gradient = reduced[self.active], gradient[self.active]
         shifts = _bootstrap(reduced, gradient - gradient.mean(0), len(theta))
-        deviation = np.maximum(shifts.std(0), 1e-12) * self.prior
+        deviation = np.maximum(shifts.std(0), 1e-12) * self.prior * _small_sample(int(np.sum(self.active)))
         covariance = np.atleast_2d(np.cov(shifts.T))
         scale = np.sqrt(np.diag(covariance))
         # a direction that only the prior holds is not determined by the data
@@ -209,16 +258,38 @@ class _Problem:
         deviation = np.where(information > 1e6, np.inf, deviation)
         estimates = {
             name: Estimate(float(t), float(d), float(t - 1.96 * d), float(t + 1.96 * d), float(b), float(p))
-            for name, t, d, b, p in zip(self.names, theta, deviation, start, self.prior, strict=True)
+            for name, t, d, b, p in zip(self.names, theta, deviation, self.base, self.prior, strict=True)
         }
         model = self.model.with_parameters({n: float(t) for n, t in zip(self.names, theta, strict=True)})
-        return Refit(model, estimates, covariance / np.outer(scale, scale), tuple(costs))
+        return Refit(
+            model,
+            estimates,
+            covariance / np.outer(scale, scale),
+            tuple(costs),
+            len(self.active),
+            int(np.sum(~self.active)),
+        )
+
+
+def _loss(residuals: Array) -> Array:
+    size = np.abs(residuals)
+    return np.where(size < TAIL, 0.5 * size**2, TAIL * (size - 0.5 * TAIL))
+
+
+def _weight(residuals: Array) -> Array:
+    return np.minimum(1.0, TAIL / np.maximum(np.abs(residuals), 1e-300))
 
 
 def _eliminate(A: Array, B: Array, C: Array, g: Array, h: Array) -> tuple[Array, Array]:
     """Schur complements onto the parameters: (segments, p, p) and gradients (segments, p)."""
     solved = np.linalg.solve(C, np.concatenate([np.swapaxes(B, 1, 2), h[..., None]], axis=2))
     return A - B @ solved[..., :-1], g - (B @ solved[..., -1:])[..., 0]
+
+
+def _small_sample(segments: int) -> float:
+    """How much wider Student's interval over few segments is than the normal one of their resampling."""
+    freedom = max(segments - 1, 1)
+    return float(student.ppf(0.975, freedom) / 1.96 * np.sqrt(segments / freedom))
 
 
 def _bootstrap(reduced: Array, gradient: Array, count: int) -> Array:

@@ -1,0 +1,128 @@
+"""Stretches of constant velocity and constant pressures, found without being told where they are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.identify.noise import run_noise
+from pneumo_ros.identify.run import Run
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+WINDOW = 0.25  # s
+TRAVEL = 5e-4  # m: ten times the bristles' deflection, so that friction has forgotten where the motion began
+SPEED_CHANGE = 0.015  # of the speed, within a window: more, and its curvature would bias the velocity
+FORCE_CHANGE = 0.01  # of the driving force, within a window: the pressures are constant enough
+_EDGE = 2e-3  # m from the end of the stroke
+
+
+@dataclass(frozen=True)
+class Window:
+    """One window of constant input: least-squares velocity, acceleration, mean pressures; used, or refused and why."""
+
+    run: str
+    start: float  # [s]
+    stop: float
+    input: float  # [V] or [N]
+    position: float  # [m], mean
+    velocity: float  # [m/s]
+    acceleration: float  # [m/s2]
+    pressure_a: float  # [Pa], mean; NaN when force-driven
+    pressure_b: float
+    slope_a: float  # [Pa/s]
+    slope_b: float
+    friction: float  # [N], drive - load - M a
+    friction_noise: float  # [N], standard deviation by sensor noise
+    velocity_noise: float  # [m/s], likewise
+    refused: str  # empty when used
+
+    @property
+    def used(self) -> bool:
+        """Whether the window is a point of the static map."""
+        return not self.refused
+
+
+def find_windows(model: Model, run: Run, window: float = WINDOW) -> list[Window]:
+    """Cut every interval of constant input into windows of `window` [s] and judge each."""
+    width = max(round(window / run.sample_time), 8)
+    edges = np.flatnonzero(np.diff(run.held) != 0.0) + 1
+    bounds = np.concatenate([[0], edges, [len(run) - 1]])
+    starts = [s for a, b in zip(bounds[:-1], bounds[1:], strict=True) for s in range(int(a), int(b) - width + 1, width)]
+    if not starts:
+        return []
+    return _judge(model, run, np.array(starts), width)
+
+
+def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> list[Window]:
+    rows = starts[:, None] + np.arange(width + 1)
+    time = (np.arange(width + 1) - 0.5 * width) * run.sample_time
+    motion = np.polynomial.polynomial.polyfit(time, run.position[rows].T, 2)  # (3, windows)
+    a, b = (_line(time, signal, rows) for signal in (run.pressure_a, run.pressure_b))
+    position, velocity, acceleration = motion[0], motion[1], 2.0 * motion[2]
+    held = run.held[starts]
+    drive, load, swing = _forces(model, position, velocity, a, b, held)
+    noise = _noise(model, run, width)
+    friction = drive - load - model["piston.mass"] * acceleration
+    span = width * run.sample_time
+    refused = _reasons(model, run, rows, position, velocity, acceleration * span, swing * span, drive - load)
+    columns = (position, velocity, acceleration, a[0], b[0], a[1], b[1], friction)
+    return [
+        Window(
+            run.name, s * run.sample_time, (s + width) * run.sample_time, float(u), *map(float, row), *noise, reason
+        )
+        for s, u, row, reason in zip(starts, held, zip(*columns, strict=True), refused, strict=True)
+    ]  # fmt: skip
+
+
+def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
+    if signal is None:
+        return np.full((2, len(rows)), np.nan)
+    return np.asarray(np.polynomial.polynomial.polyfit(time, signal[rows].T, 1))
+
+
+def _forces(
+    model: Model, position: Array, velocity: Array, a: Array, b: Array, held: Array
+) -> tuple[Array, Array, Array]:
+    """Drive and load force [N] at each window's mean, and how fast the drive changes [N/s]."""
+    states = np.tile(model.state(), (len(position), 1))
+    states[:, 0], states[:, 1] = position, velocity
+    swing = np.zeros(len(position))
+    if not model.force_driven:
+        states[:, 2], states[:, 3] = a[0], b[0]
+        swing = model["piston.area_a"] * a[1] - model["piston.area_b"] * b[1]
+    seen = model.outputs(states, held)
+    return seen["drive"], seen["force"], swing
+
+
+def _noise(model: Model, run: Run, width: int) -> tuple[float, float]:
+    """Standard deviations by sensor noise of a window's friction force [N] and velocity [m/s]."""
+    noise, span = run_noise(run), width * run.sample_time
+    parts = [model["piston.mass"] * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
+    if not model.force_driven:
+        for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
+            parts.append(model[f"piston.{area}"] * noise[name] / np.sqrt(width))
+    return float(np.sqrt(np.sum(np.square(parts)))), float(noise["position_m"] * np.sqrt(12.0 / width) / span)
+
+
+def _reasons(
+    model: Model, run: Run, rows: NDArray[np.int64], position: Array, velocity: Array, speed_change: Array,
+    force_change: Array, force: Array,
+) -> list[str]:  # fmt: skip
+    span = (rows.shape[1] - 1) * run.sample_time
+    speed, edge = np.abs(velocity), 0.5 * model["piston.stroke"] - _EDGE
+    tests = (
+        (~run.measured[rows].all(axis=1), lambda i: "a gap in the recording"),
+        (np.abs(run.position[rows]).max(axis=1) > edge, lambda i: "at the end of the stroke"),
+        (speed * span < TRAVEL, lambda i: f"the piston rests or creeps ({1e3 * speed[i]:.2f} mm/s)"),
+        (
+            np.abs(speed_change) > SPEED_CHANGE * speed,
+            lambda i: f"velocity changes by {100 * abs(speed_change[i]) / speed[i]:.0f} %",
+        ),
+        (
+            np.abs(force_change) > FORCE_CHANGE * np.abs(force),
+            lambda i: f"pressures still move the force by {abs(force_change[i]):.1f} N",
+        ),
+    )
+    return [next((words(i) for bad, words in tests if bad[i]), "") for i in range(len(rows))]
