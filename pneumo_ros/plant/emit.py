@@ -142,7 +142,7 @@ def module_text(resolver: "Resolver", parameters: tuple[str, ...], observed: tup
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
     parts += [_step(resolver, states, rates, names), _run(states, names), _lanes(states, names)]
-    parts += [_follow(resolver, states, names)]
+    parts += [_follow(resolver, states, rates, names)]
     parts += [_pointwise("rates", "derivatives", states, len(states), names)]
     parts += [_pointwise("observe", "observation", states, len(observed), names)]
     return "\n\n".join(parts) + "\n"
@@ -176,31 +176,31 @@ def _observation(
     return _function("observation", [*states, "U", "t", *names], flow.lines, returns)
 
 
+def _evaluate(states: list[str], rates: list[str], names: list[str], suffix: str, time: str) -> str:
+    slopes = ", ".join([f"d_{s}" for s in states] + [f"r_{s}" for s in rates]) + ","
+    return f"{slopes} = derivatives({', '.join([*(s + suffix for s in states), 'U', time, *names])})"
+
+
+def _half_step(s: str, rates: list[str]) -> str:
+    return f"{s}_m = {s} + " + (f"half * damped(r_{s} * half) * d_{s}" if s in rates else f"half * d_{s}")
+
+
+def _whole_step(s: str, rates: list[str], weight: str) -> str:
+    exponential = f"h * {weight}(r_{s} * h) * (d_{s} + r_{s} * ({s}_m - {s}))"
+    return f"{s}_n = {s} + " + (exponential if s in rates else f"h * d_{s}")
+
+
 def _step(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
     velocities = [s for s in states if resolver.states[s].states[s].unit == "m/s"]
-    others = [s for s in states if s not in velocities]
-    slopes = ", ".join([f"d_{s}" for s in states] + [f"r_{s}" for s in rates]) + ","
-    parameters = ", ".join(["U", "{time}", *names])
-
-    def evaluate(suffixes: dict[str, str], time: str) -> str:
-        arguments = ", ".join(s + suffixes[s] for s in states)
-        return f"{slopes} = derivatives({arguments}, {parameters.format(time=time)})"
-
-    lines = ["half = 0.5 * h", "middle = t + half", evaluate(dict.fromkeys(states, ""), "t")]
-    for s in states:
-        weight = f"half * damped(r_{s} * half)" if s in rates else "half"
-        lines.append(f"{s}_m = {s} + {weight} * d_{s}")
-    lines.append(evaluate(dict.fromkeys(states, "_m"), "middle"))
-    for s in velocities:
-        implicit = f"h * damped(r_{s} * h) * (d_{s} + r_{s} * ({s}_m - {s}))"
-        lines.append(f"{s}_n = {s} + " + (implicit if s in rates else f"h * d_{s}"))
+    lines = ["half = 0.5 * h", "middle = t + half", _evaluate(states, rates, names, "", "t")]
+    lines += [_half_step(s, rates) for s in states]
+    lines.append(_evaluate(states, rates, names, "_m", "middle"))
+    lines += [_whole_step(s, rates, "damped") for s in velocities]
     lines += [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
-    lines.append(evaluate(dict.fromkeys(states, "_m"), "middle"))
-    for s in others:
-        exact = f"h * relaxation(r_{s} * h) * (d_{s} + r_{s} * ({s}_m - {s}))"
-        lines.append(f"{s}_n = {s} + " + (exact if s in rates else f"h * d_{s}"))
-    after = f"after_step({', '.join(s + '_n' for s in states)}, {parameters.format(time='t + h')})"
-    body = "\n".join("    " + line for line in [*lines, f"return {after}"])
+    lines.append(_evaluate(states, rates, names, "_m", "middle"))
+    lines += [_whole_step(s, rates, "relaxation") for s in states if s not in velocities]
+    lines.append(f"return after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
+    body = "\n".join("    " + line for line in lines)
     return f"@inline\ndef step({', '.join([*states, 'U', 't', 'h', *names])}):\n{body}"
 
 
@@ -258,13 +258,21 @@ def run_lanes(x, q, voltage, first, t0, h, stride, parts, out):
             out[b, k, :] = x_b'''
 
 
-def _follow(resolver: "Resolver", states: list[str], names: list[str]) -> str:
+def _follow(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
     own = [s for s in states if resolver.states[s].name not in FRAME]
     measured = [s for s in states if s not in own]
-    between = "\n".join(
-        f"            {s} = X[k, {i}] + c * (X[k + 1, {i}] - X[k, {i}])" for i, s in enumerate(measured)
-    )
+
+    def between(suffix: str, share: str) -> list[str]:
+        return [f"{s}{suffix} = X[k, {i}] + {share} * (X[k + 1, {i}] - X[k, {i}])" for i, s in enumerate(measured)]
+
+    lines = ["t = t0 + (k * stride + s) * h", "half = 0.5 * h", *between("", "(s / stride)")]
+    lines += [_evaluate(states, rates, names, "", "t"), *between("_m", "((s + 0.5) / stride)")]
+    lines += [_half_step(s, rates) for s in own]
+    lines += [_evaluate(states, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / stride)")]
+    lines += [_whole_step(s, rates, "relaxation") for s in own]
     targets = ", ".join(s if s in own else "_" for s in states) + ","
+    lines.append(f"{targets} = after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
+    body = "\n".join("            " + line for line in lines)
     load = "\n".join(f"    {s} = X[0, {states.index(s)}]" for s in own)
     restore = "\n".join(f"        {s} = X[k + 1, {i}]" for i, s in enumerate(measured))
     keep = "\n".join(f"        X[k + 1, {states.index(s)}] = {s}" for s in own)
@@ -282,10 +290,7 @@ def follow(X, q, voltage, t0, h, stride, out):
     for k in range(X.shape[0] - 1):
         U = voltage[k]
         for s in range(stride):
-            c = s / stride
-            t = t0 + (k * stride + s) * h
-{between}
-            {targets} = step({", ".join([*states, "U", "t", "h", *names])})
+{body}
 {restore}
 {keep}
         t = t0 + (k + 1) * stride * h
