@@ -10,15 +10,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.along import Along, along
 from pneumo_ros.diagnose.dependence import Dependence, dependences
-from pneumo_ros.diagnose.locate import (
-    MOMENTUM_FLOOR,
-    Located,
-    equation_errors,
-    locate,
-    on_grid,
-    signal_errors,
-    window_of,
-)
+from pneumo_ros.diagnose.locate import Located, equation_errors, locate, on_grid, signal_errors, window_of
 from pneumo_ros.diagnose.regimes import Mask, regimes
 from pneumo_ros.diagnose.shares import Share, by_regime, pooled
 from pneumo_ros.diagnose.sliding import FrictionPoints, friction_map
@@ -29,10 +21,7 @@ from pneumo_ros.identify.weak import Residual, equation_residuals
 from pneumo_ros.identify.windows import free_run, predict
 from pneumo_ros.plant import Model
 
-__all__ = [
-    "MOMENTUM_FLOOR", "Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run",
-    "judge_equations",
-]  # fmt: skip
+__all__ = ["Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run", "judge_equations"]
 
 Array = NDArray[np.float64]
 

@@ -14,10 +14,6 @@ from pneumo_ros.identify.windows import Prediction
 
 Array = NDArray[np.float64]
 
-# N: friction along a measured motion is known no better than this, because its velocity is an estimate; measured on
-# recordings of the true machine, 0.05 to 0.06 N at 10 um position noise
-MOMENTUM_FLOOR = 0.06
-
 
 @dataclass(frozen=True)
 class Located:
@@ -62,15 +58,10 @@ def equation_errors(residuals: Mapping[str, Residual], run: Run, masks: Mapping[
         }
         steps = np.diff(residual.time)
         hop = float(steps.min()) if len(steps) else 0.25 * window_of(name)
-        result[name] = Errors.of(residual.time, residual.value, noise_of(residual), hop, weights)
+        result[name] = Errors.of(residual.time, residual.value, residual.noise, hop, weights)
     return result
 
 
 def window_of(equation: str) -> float:
     """Length of the windows [s] in which an equation is judged."""
     return MOMENTUM_WINDOW if equation == "momentum" else CHAMBER_WINDOW
-
-
-def noise_of(residual: Residual) -> Array:
-    """What noise alone gives in each window (n,), in the residual's unit; for momentum with the floor above."""
-    return np.hypot(residual.noise, MOMENTUM_FLOOR if residual.equation == "momentum" else 0.0)

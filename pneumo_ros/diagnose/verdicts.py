@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.locate import noise_of
 from pneumo_ros.identify.weak import Residual
 
 Array = NDArray[np.float64]
 
-_EXPLAINED = 1.2  # times the noise: what estimating the noise from the same recording leaves uncertain, generously
+# times the noise: what estimating the noise from the same recording leaves uncertain, and what the scatter of a mean
+# square over overlapping windows adds, which falls with the root of their number
+_EXPLAINED, _SCATTER = 1.1, 3.0
 _SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
 
 
@@ -38,12 +39,12 @@ class SignalError:
 
 @dataclass(frozen=True)
 class EquationVerdict:
-    """One equation over all runs."""
+    """One equation over all runs; where nothing could be judged, numbers are NaN and the verdict is None."""
 
     residual_rms: float
     unit: str
     ratio_to_noise: float
-    explained_by_noise: bool
+    explained_by_noise: bool | None
 
 
 def judge_equations(residuals: Sequence[dict[str, Residual]]) -> dict[str, EquationVerdict]:
@@ -52,9 +53,12 @@ def judge_equations(residuals: Sequence[dict[str, Residual]]) -> dict[str, Equat
 
 
 def _judge(parts: list[Residual]) -> EquationVerdict:
-    value, noise = (np.concatenate(found) for found in ([p.value for p in parts], [noise_of(p) for p in parts]))
-    ratio = root_mean_square(value / noise) if len(value) else math.nan
-    return EquationVerdict(root_mean_square(value), parts[0].unit, ratio, bool(ratio <= _EXPLAINED))
+    value, noise = (np.concatenate(found) for found in ([p.value for p in parts], [p.noise for p in parts]))
+    if not len(value):
+        return EquationVerdict(math.nan, parts[0].unit, math.nan, None)
+    ratio = root_mean_square(value / noise)
+    explained = bool(ratio <= _EXPLAINED + _SCATTER / math.sqrt(len(value)))
+    return EquationVerdict(root_mean_square(value), parts[0].unit, ratio, explained)
 
 
 def judge_signal(error: Array, measured: Array, noise: float) -> SignalError:
