@@ -25,6 +25,7 @@ from pneumo_ros.ros.controller.settings import (
 from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.parameters import Values
+from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
 REFERENCE = "position/reference"
@@ -132,6 +133,11 @@ class Controller(AxisNode):
                 self._publisher.publish(self._message.fill(0, voltage))
 
     # --- life -------------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Nothing to begin, but everything to answer in time. In lockstep there is no hurry."""
+        if self._clock_ns is time.monotonic_ns:
+            take_priority(self.parameters["real_time_priority"])
 
     def finish(self) -> None:
         """0 V is the last command."""

@@ -7,6 +7,7 @@ from pneumo_ros.control import Law, Pid, ValveInverse
 from pneumo_ros.control.reference import Reference, constant, sine, steps
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
 LAWS: Mapping[str, type[Law]] = {"pid": Pid}
@@ -16,6 +17,7 @@ _DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
 _OWN = (
     Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
     Setting("law", "pid", "control law", live=False, choices=tuple(LAWS)),
+    PRIORITY,
     Setting("measurement_timeout", 0.1, "age of the last measurement at which 0 V is sent", "s", 0.001, 60.0),
     Setting("max_voltage", 10.0, "limit of the command", "V", 0.0, 100.0),
 )

@@ -14,6 +14,7 @@ from pneumo_ros.ros.description import Description, describe
 from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.peers import loop_closed
+from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import SUBSCRIBE
 from pneumo_ros.ros.simulator.health import Monitor
 from pneumo_ros.ros.simulator.lockstep import Lockstep
@@ -90,6 +91,7 @@ class Simulator(AxisNode):
         self.simulation.reset()
         if self._ticker:
             self._ticker.start()
+            take_priority(self.parameters["real_time_priority"])  # after the start: new threads do not inherit it
 
     def finish(self) -> None:
         """Stop the plant."""

@@ -3,6 +3,7 @@
 from pneumo_ros.plant import Model, Parameter
 from pneumo_ros.plant.model import STEP
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
 EFFECTS = "effects"
@@ -13,6 +14,7 @@ FIXED = (
     Setting("publish_rate", 500.0, "rate of joint states and pressures", "Hz", 1.0, 1000.0, live=False),
     Setting("step", STEP, "integration step", "s", 1e-6, 1e-3, live=False),
     Setting("seed", 0, "of the sensor noise", "", 0, 2**31 - 1, live=False),
+    PRIORITY,
     Setting("publish_clock", False, "send simulated time on /clock and stamp messages with it", live=False),
     Setting(
         "real_time_factor", 1.0,
