@@ -20,13 +20,15 @@ ROS_WHEELS = [
     "ros-kilted-trajectory-msgs",
     "ros-rosgraph-msgs",
 ]
+REPORT = ["plotly>=5"]  # the pages that --report writes
 TEST = ["pytest>=7.4"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
 
 def files(folder: str, pattern: str) -> list[str]:
-    """Files under `folder` that match, as setup() wants them: relative to this file, sorted."""
-    return sorted(str(path) for path in Path(folder).glob(pattern) if path.is_file())
+    """Files under `folder` that match, without caches, relative to this file, as setup() wants them."""
+    found = (path for path in Path(folder).glob(pattern) if path.is_file() and "__pycache__" not in path.parts)
+    return sorted(map(str, found))
 
 
 def shared(folder: str, target: str) -> list[tuple[str, list[str]]]:
@@ -34,8 +36,7 @@ def shared(folder: str, target: str) -> list[tuple[str, list[str]]]:
     rows: dict[str, list[str]] = {}
     for name in files(folder, "**/*"):
         inner = Path(name).parent.relative_to(folder)
-        if "__pycache__" not in inner.parts:
-            rows.setdefault(str(Path("share") / NAME / target / inner), []).append(name)
+        rows.setdefault(str(Path("share") / NAME / target / inner), []).append(name)
     return sorted(rows.items())
 
 
@@ -49,9 +50,9 @@ setup(
     maintainer_email="maintainers@pneumo-ros.example",
     license="Apache-2.0",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    # Machine files are read through importlib.resources, so they travel inside the package; share/ holds the copy
-    # that ROS users expect. An editable install has no share/.
-    package_data={NAME: ["py.typed", *(str(Path(f).relative_to(NAME)) for f in files(f"{NAME}/config", "**/*"))]},
+    # Machine files and the like are read through importlib.resources, so they travel inside the package; share/ holds
+    # the copy of the machine files that ROS users expect. An editable install has no share/.
+    package_data={NAME: [str(Path(f).relative_to(NAME)) for f in files(NAME, "**/*") if not f.endswith(".py")]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
@@ -61,7 +62,7 @@ setup(
     zip_safe=False,
     python_requires=">=3.10",
     install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap", "apsw", "lz4", "zstandard"],
-    extras_require={"ros": ROS_WHEELS, "test": TEST, "dev": TEST + DEV},
+    extras_require={"ros": ROS_WHEELS, "report": REPORT, "test": TEST, "dev": REPORT + TEST + DEV},
     entry_points={
         "console_scripts": [
             "pneumo = pneumo_ros.command.main:main",

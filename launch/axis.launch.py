@@ -23,14 +23,13 @@ def generate_launch_description() -> LaunchDescription:
     """Simulator, controller and, when `record` names a folder, the recorder."""
     namespace = LaunchConfiguration("namespace")
     record = LaunchConfiguration("record")
+    machine = [LaunchConfiguration("params")]  # the controller takes the dead zone from it
     simulator = Node(
-        package="pneumo_ros",
-        executable="simulator",
-        namespace=namespace,
-        parameters=[LaunchConfiguration("params")],
-        output="screen",
+        package="pneumo_ros", executable="simulator", namespace=namespace, parameters=machine, output="screen"
     )
-    controller = Node(package="pneumo_ros", executable="controller", namespace=namespace, output="screen")
+    controller = Node(
+        package="pneumo_ros", executable="controller", namespace=namespace, parameters=machine, output="screen"
+    )
     recorder = Node(
         package="pneumo_ros",
         executable="recorder",

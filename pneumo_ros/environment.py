@@ -33,7 +33,9 @@ LIBRARIES = {
     "apsw": ("apsw", None),  # these three come with rosbags and mcap
     "lz4": ("lz4", None),
     "zstandard": ("zstandard", None),
+    "plotly": ("plotly", "python3-plotly"),  # for reports only
 }
+NEEDED = tuple(name for name in LIBRARIES if name != "plotly")
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 
 
@@ -46,7 +48,7 @@ def missing(modules: Iterable[str]) -> list[str]:
     return [name for name in modules if importlib.util.find_spec(name) is None]
 
 
-def require_libraries(modules: Iterable[str] = LIBRARIES) -> None:
+def require_libraries(modules: Iterable[str] = NEEDED) -> None:
     """MissingDependencyError unless every one of the third-party `modules` is installed."""
     absent = missing(modules)
     if absent:

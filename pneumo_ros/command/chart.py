@@ -17,11 +17,10 @@ def chart(
     for mark, values in curves.items():
         for column, value in enumerate(_sampled(time, values, width)):
             canvas[round((high - value) / span * (height - 1))][column] = mark
-    labels = [f"{high:g} {unit}", *[""] * (height - 2), f"{low:g} {unit}"]
+    labels = [f"{high:.3g} {unit}", *[""] * (height - 2), f"{low:.3g} {unit}"]
     margin = max(map(len, labels))
     rows = [f"{label:>{margin}} |{''.join(row).rstrip()}" for label, row in zip(labels, canvas, strict=True)]
-    end = f"{time[-1]:g} s"
-    start = f"{time[0]:g}"
+    start, end = f"{time[0]:.1f}", f"{time[-1]:.1f} s"
     axis = f"{'':>{margin}} +{'-' * width}\n{'':>{margin}}  {start}{end:>{width - len(start)}}"
     return "\n".join([*rows, axis])
 

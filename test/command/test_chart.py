@@ -5,13 +5,13 @@ from pneumo_ros.command.chart import chart
 
 def test_a_step_is_drawn_where_it_happens() -> None:
     time = [0.0, 1.0, 2.0, 3.0]
-    text = chart(time, {"*": [0.0, 0.0, 1.0, 1.0]}, "m", width=6, height=3)
+    text = chart(time, {"*": [0.0, 0.0, 1.0, 1.0]}, "m", width=10, height=3)
     assert text.splitlines() == [
-        "1 m |    **",
+        "1 m |       ***",
         "    |",
-        "0 m |****",
-        "    +------",
-        "     0  3 s",
+        "0 m |*******",
+        "    +----------",
+        "     0.0  3.0 s",
     ]
 
 

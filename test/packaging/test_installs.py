@@ -68,8 +68,8 @@ def test_the_wheel_carries_machine_files_and_share(wheel: Path) -> None:
 
 def test_the_wheel_carries_the_whole_package_and_nothing_else(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
-    source = {str(path.relative_to(ROOT)) for path in (ROOT / "pneumo_ros").rglob("*.py")}
-    assert source <= names
+    present = (path for path in (ROOT / "pneumo_ros").rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    assert {str(path.relative_to(ROOT)) for path in present} <= names
     assert {name.partition("/")[0].partition("-")[0] for name in names} == {"pneumo_ros"}
 
 

@@ -1,0 +1,56 @@
+"""What is in a bag, and how the simulator that filled it was doing."""
+
+from pathlib import Path
+
+from pneumo_ros.command.console import columns
+
+LATE = 0.01  # share of late ticks from which real time was not kept
+
+
+def traffic(bag: Path) -> str:
+    """Table of the topics in a bag with their counts and rates."""
+    import numpy as np
+
+    from pneumo_ros.records import Bag
+
+    times: dict[str, list[int]] = {}
+    for block in Bag(bag).blocks():
+        for number in np.unique(block.channel).tolist():
+            arrived = block.log_time[block.channel == number]
+            times.setdefault(block.channels[number].topic, []).extend(arrived.tolist())
+    rows = [("  topic", "messages", "rate")]
+    for topic, stamps in sorted(times.items()):
+        span = (max(stamps) - min(stamps)) * 1e-9
+        rows.append((f"  {topic}", str(len(stamps)), f"{(len(stamps) - 1) / span:.1f} Hz" if span > 0.0 else ""))
+    return columns(rows, right=(1, 2))
+
+
+def hardship(bag: Path) -> str | None:
+    """A sentence when the simulator could not keep real time or lost the controller, by its own diagnostics."""
+    said = last_diagnostics(bag, "simulator")
+    late, ticks = float(said.get("late_ticks", 0)), float(said.get("ticks", 0))
+    dropped, closures = float(said.get("dropped_ms", 0)), int(said.get("valve_closures", 0))
+    if late <= LATE * ticks and not dropped and not closures:
+        return None
+    closed = f", and the valve closed {closures} times for lack of commands" if closures else ""
+    return (
+        f"This machine was busy: {100.0 * late / max(ticks, 1.0):.1f} % of the simulator's ticks came over 1 ms late"
+        f"{closed}. The comparison below suffers from it; try again when less is running."
+    )
+
+
+def last_diagnostics(bag: Path, node: str) -> dict[str, str]:
+    """What a node said last on /diagnostics, empty if nothing."""
+    from rosbags.typesys import Stores, get_typestore
+
+    from pneumo_ros.records import Bag
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    last: dict[str, str] = {}
+    for message in Bag(bag).messages():
+        if message.channel.topic == "/diagnostics":
+            heard = store.deserialize_cdr(message.payload, message.channel.type)
+            for status in getattr(heard, "status", ()):
+                if node in status.name:
+                    last = {pair.key: pair.value for pair in status.values}
+    return last
