@@ -1,0 +1,122 @@
+"""What the tests of every effect share: all effects there are, what an argument means, and machines to put them in."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Effect, Library, Model, Parameter, load_model, maths
+from pneumo_ros.plant.library import FRAME
+from pneumo_ros.plant.signals import SIGNALS
+
+LIBRARY = Library()
+FRAME_EFFECTS = [LIBRARY.frame(name) for name in FRAME]
+CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names()]
+EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
+AXIS = load_model("axis")
+
+_RANGES = {  # by unit: where the random values of states and signals lie
+    "V": (-10.0, 10.0), "s": (0.0, 1e3), "Pa": (5e4, 1e6), "kg/s": (-0.02, 0.02), "m3": (0.0, 1e-4),
+    "N": (-500.0, 500.0), "kg": (0.0, 20.0), "m": (-1.0, 1.0), "m/s": (-5.0, 5.0), "N s/m": (0.0, 5e3), "1": (0.0, 1.0),
+    "W": (-300.0, 300.0), "K": (250.0, 400.0),
+}  # fmt: skip
+
+
+def room(effect: type[Effect]) -> str:
+    """The folder of the catalogue an effect stands in."""
+    return effect.__module__.split(".")[-2]
+
+
+def meaning(name: str, effect: type[Effect]) -> tuple[str, Parameter | None]:
+    """Unit of what an argument of `effect` stands for, and its specification if it is a parameter."""
+    if name in effect.parameters:
+        return effect.parameters[name].unit, effect.parameters[name]
+    for other in (effect, *EFFECTS.values()):
+        if name in other.states:
+            return other.states[name].unit, None
+    if name in SIGNALS:
+        return SIGNALS[name].unit, None
+    owner, _, key = name.rpartition("__")
+    for other in EFFECTS.values():
+        if key in other.parameters and owner in ("", other.name):
+            return other.parameters[key].unit, other.parameters[key]
+    raise KeyError(name)
+
+
+def drawn(parameter: Parameter, random: np.random.Generator) -> float:
+    """A value of a parameter: its bounds, its default, or anything between."""
+    low = max(parameter.low, -1e3 * (1.0 + abs(parameter.default)))
+    high = min(parameter.high, 1e3 * (1.0 + abs(parameter.default)))
+    between = random.uniform(low, high)
+    if low > 0.0:
+        between = math.exp(random.uniform(math.log(low), math.log(high)))
+    return float(random.choice([low, high, parameter.default, between, between]))
+
+
+def argument(name: str, effect: type[Effect], random: np.random.Generator) -> float:
+    """A random value of what an argument stands for."""
+    unit, parameter = meaning(name, effect)
+    return drawn(parameter, random) if parameter else float(random.uniform(*_RANGES.get(unit, (-1.0, 1.0))))
+
+
+def seeded(name: str) -> np.random.Generator:
+    """The same random numbers for an effect in every run."""
+    return np.random.default_rng(list(name.encode()))
+
+
+def effect_function(effect: type[Effect], key: str) -> Callable[..., Any]:
+    """An effect's function with the names of `maths` at hand, as in a kernel."""
+    function = vars(effect)[key]
+    return FunctionType(function.__code__, {**vars(maths), **function.__globals__}, key)
+
+
+@cache
+def machine(name: str) -> Model:
+    """The axis with the effect added, in place of those that set the same signal."""
+    effect, effects = EFFECTS[name], list(AXIS.effects)
+    if name in effects or name in FRAME:
+        return AXIS
+    for signal in sets(effect):
+        effects = [other for other in effects if signal not in sets(EFFECTS[other])]
+    return AXIS.with_effects([*effects, name])
+
+
+def sets(effect: type[Effect]) -> set[str]:
+    """The single signals of which an effect is the source."""
+    equations = effect.functions.get("equations")
+    written = [w for w in equations.writes if w not in equations.reads] if equations else []
+    return {w for w in written if w in SIGNALS and SIGNALS[w].kind == "single"}
+
+
+@cache
+def lone_machine(name: str) -> Model:
+    """The effect with as few others as it needs: none, the bristle, or the whole axis."""
+    for others in ([], ["lugre_friction"]):
+        try:
+            return AXIS.with_effects(dict.fromkeys([*others, name]))
+        except UsageError:
+            continue
+    return machine(name)
+
+
+@cache
+def _interpreted(text: str) -> ModuleType:
+    compiled = "from pneumo_ros.plant.jit import"
+    assert compiled in text
+    module = ModuleType("interpreted_kernel")
+    plain = "entry = inline = lambda function: function\nfrom pneumo_ros.plant.maths import"
+    names = "exponent, mantissa, power_of_two"
+    head, _, tail = text.partition(compiled)
+    exec(f"{head}{plain} {names}\n{tail.partition(chr(10))[2]}", vars(module))
+    return module
+
+
+def in_python(model: Model) -> Model:
+    """The same model, whose kernel's text Python runs, uncompiled."""
+    plain = Model(model.composition, model.parameters, model.name, model.library)
+    vars(plain)["kernel"] = _interpreted(model.composition.text)
+    return plain

@@ -1,0 +1,139 @@
+"""What a physical effect must fulfil, as functions that raise: for every effect of the catalogue, or any other."""
+
+import math
+
+import numpy as np
+from plant.catalogue import argument, drawn, effect_function, in_python, meaning, seeded
+from plant.units import Quantity, quantity, unit, with_units
+
+from pneumo_ros.plant import Effect, Model
+from pneumo_ros.plant.library import FRAME
+from pneumo_ros.plant.signals import SIGNALS
+
+CYCLES = ((0.0, 1e-5, 5.0), (0.5, 2e-3, 1.0), (0.9, 0.3, 0.2))  # centre [m], amplitude [m], frequency [Hz]
+
+
+def functions(effect: type[Effect]) -> list[str]:
+    """The functions of an effect that a kernel runs."""
+    return [key for key in ("equations", "advance") if key in effect.functions]
+
+
+def check_documentation(effect: type[Effect]) -> None:
+    """A person learns what it is, where it comes from, how to recognise it, and what may be entered."""
+    assert len((effect.__doc__ or "").split()) >= 4, "say in the docstring what it is and give the equation"
+    assert effect.source, "name the source of the equation"
+    assert effect.signature or effect.name in FRAME, "say in `signature` how a person recognises it in a recording"
+    for key, parameter in effect.parameters.items():
+        assert unit(parameter.unit), key
+        assert len(parameter.meaning.split()) >= 2, f"{key}: say what it means"
+        assert math.isfinite(parameter.low), f"{key}: give the lowest value that makes sense"
+        assert math.isfinite(parameter.high), f"{key}: give the highest value that makes sense"
+        assert parameter.low < parameter.high, key
+    for key, state in effect.states.items():
+        assert unit(state.unit), key
+        assert state.meaning, key
+
+
+def declared_unit(name: str, effect: type[Effect]) -> Quantity:
+    """Unit of what an effect returns under that name."""
+    kind, _, state = name.partition("_")
+    if kind in ("der", "rate") and state in effect.states:
+        return (unit(effect.states[state].unit) if kind == "der" else unit("1")) / unit("s")
+    return unit(effect.states[name].unit if name in effect.states else SIGNALS[name].unit)
+
+
+def check_units(effect: type[Effect]) -> None:
+    """Run the effect's functions on quantities: all that is added or compared fits, the results are as declared."""
+    random = seeded(effect.name)
+    for key in functions(effect):
+        function, aware, seen = effect.functions[key], with_units(vars(effect)[key]), set()
+        for _ in range(60):
+            returned = aware(*(unit(meaning(a, effect)[0]) * argument(a, effect, random) for a in function.reads))
+            values = returned if isinstance(returned, tuple) else (returned,)
+            for name, value in zip(function.writes, map(quantity, values), strict=True):
+                declared = declared_unit(name, effect)
+                assert value.fits(declared), f"{name} comes out as {value}, it is declared as {declared}"
+                seen |= {name} if value.value else set()
+        assert seen == set(function.writes), f"always zero: {set(function.writes) - seen}"
+
+
+def check_equations_are_finite(effect: type[Effect]) -> None:
+    """Each function alone, over the whole range of everything it reads."""
+    random = seeded(effect.name)
+    for key in functions(effect):
+        for _ in range(300):
+            given = {a: argument(a, effect, random) for a in effect.functions[key].reads}
+            assert np.all(np.isfinite(effect_function(effect, key)(**given))), given
+
+
+def own_values(effect: type[Effect], random: np.random.Generator) -> dict[str, float]:
+    """Random values for the effect's own parameters."""
+    return {f"{effect.name}.{key}": drawn(parameter, random) for key, parameter in effect.parameters.items()}
+
+
+def check_machine_is_finite(model: Model, effect: type[Effect]) -> None:
+    """All derivatives of the machine, in random states, for any permitted parameters of the effect."""
+    random = seeded(effect.name)
+    for _ in range(20):
+        own = own_values(effect, random)
+        varied = in_python(model.with_parameters(own))
+        x = varied.state(y=random.uniform(-1.0, 1.0), v=random.uniform(-3.0, 3.0))
+        x[2:4] = random.uniform(5e4, 7e5, 2)
+        assert np.isfinite(varied.derivatives(x, random.uniform(-10.0, 10.0), random.uniform(0.0, 100.0))).all(), own
+
+
+def cycle_work(model: Model, centre: float, amplitude: float, frequency: float) -> tuple[float, float]:
+    """Work of friction and load force over the last of three cycles of a sine, and the work without signs [J]."""
+    count = 200
+    t = np.arange(3 * count + 1) / (count * frequency)
+    omega, sample, held = 2.0 * np.pi * frequency, 1.0 / (count * frequency), np.full_like(t, 4e5)
+    v = amplitude * omega * np.cos(omega * t)
+    measured = np.column_stack([centre + amplitude * np.sin(omega * t), v, held, held])
+    x, _ = model.follow(measured, np.zeros_like(t), model.state()[4:], sample_time=sample, step=sample / 4)
+    seen = model.outputs(x, np.zeros_like(t), start=-sample, sample_time=sample)
+    power = ((seen["friction"] + seen["force"]) * v)[-count - 1 :]
+    mean = 0.5 * (power[1:] + power[:-1]) * sample
+    return float(mean.sum()), float(np.abs(mean).sum())
+
+
+def check_dissipation(model: Model, effect: type[Effect]) -> None:
+    """A closed cycle takes energy, or at least gives none, for several motions and parameters."""
+    random = seeded(effect.name)
+    for cycle in CYCLES:
+        for values in ({}, own_values(effect, random)):
+            work, size = cycle_work(in_python(model.with_parameters(values)), *cycle)
+            assert work >= -1e-2 * size, f"{work} of {size} J over centre, amplitude, frequency {cycle} with {values}"
+
+
+def mass_rates(model: Model, p_a: float, p_b: float, supply: float, atmosphere: float, voltage: float) -> np.ndarray:
+    """What flows into both chambers [kg/s], the piston at rest in the middle."""
+    outside = {"air.supply_pressure": supply, "air.atmospheric_pressure": atmosphere}
+    still = in_python(model.with_parameters(outside))
+    slope = still.derivatives(still.state(p_a=p_a, p_b=p_b), voltage)[0, 2:4]
+    volumes = np.array([model["chambers.volume_a"], model["chambers.volume_b"]])
+    return np.asarray(slope * volumes / (model["air.heat_capacity_ratio"] * 287.0 * 293.0))
+
+
+def check_gas_flows_downhill(model: Model) -> None:
+    """Gas flows from high to low pressure only, nothing flows between equal pressures, and none is made or lost."""
+    for voltage in (-8.0, -1.0, 0.0, 0.5, 3.0, 10.0):
+        assert np.abs(mass_rates(model, 2e5, 2e5, 2e5, 2e5, voltage)).max() < 1e-12, "between equal pressures"
+        assert mass_rates(model, 7e5, 2e5, 6e5, 1e5, voltage)[0] <= 1e-15, "into the fullest chamber a"
+        assert mass_rates(model, 2e5, 7e5, 6e5, 1e5, voltage)[1] <= 1e-15, "into the fullest chamber b"
+        assert mass_rates(model, 1e5, 3e5, 6e5, 1.5e5, voltage)[0] >= -1e-15, "out of the emptiest chamber a"
+        assert mass_rates(model, 3e5, 1e5, 6e5, 1.5e5, voltage)[1] >= -1e-15, "out of the emptiest chamber b"
+        assert mass_rates(model, 7e5, 6.5e5, 6e5, 1e5, voltage).sum() <= 1e-15, "from nowhere"
+        assert mass_rates(model, 1e5, 1.2e5, 6e5, 1.5e5, voltage).sum() >= -1e-15, "into nowhere"
+
+
+def check_leak_is_closed(effect: type[Effect]) -> None:
+    """What an effect moves that knows neither supply nor atmosphere leaves one chamber and enters the other."""
+    equations, outside = effect.functions.get("equations"), {"p_s", "p_atm", "supply_pressure", "atmospheric_pressure"}
+    if equations is None or not {"flow_a", "flow_b"} & set(equations.writes) or outside & set(equations.reads):
+        return
+    random = seeded(effect.name)
+    for _ in range(50):
+        given = {a: argument(a, effect, random) for a in equations.reads}
+        values = effect_function(effect, "equations")(**given)
+        flows = dict(zip(equations.writes, values if isinstance(values, tuple) else (values,), strict=True))
+        assert flows.get("flow_a", 0.0) == -flows.get("flow_b", 0.0), given
