@@ -31,10 +31,10 @@ def files(folder: str, pattern: str) -> list[str]:
     return sorted(map(str, found))
 
 
-def shared(folder: str, target: str) -> list[tuple[str, list[str]]]:
+def shared(folder: str, pattern: str, target: str) -> list[tuple[str, list[str]]]:
     """data_files rows that keep the sub-folders of `folder` under share/pneumo_ros/`target`."""
     rows: dict[str, list[str]] = {}
-    for name in files(folder, "**/*"):
+    for name in files(folder, pattern):
         inner = Path(name).parent.relative_to(folder)
         rows.setdefault(str(Path("share") / NAME / target / inner), []).append(name)
     return sorted(rows.items())
@@ -56,8 +56,8 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        *shared(f"{NAME}/config", "config"),
-        *shared("launch", "launch"),
+        *shared(f"{NAME}/config", "**/*.yaml", "config"),
+        *shared("launch", "**/*.launch.py", "launch"),
     ],
     zip_safe=False,
     python_requires=">=3.10",
