@@ -1,4 +1,4 @@
-"""Identification on the paper's machine, simulated with sensor noise: errors, and how often the intervals hold the truth.
+"""Identification on the paper's machine with sensor noise: errors, and how often the intervals hold the truth.
 
 Fourteen constant-voltage runs of 8 s at 1 kHz (10 um, 300 Pa), repeated over noise seeds. Prints, per parameter, the
 largest error, the share of seeds whose 95 % interval holds the truth, and how often it was declared undetermined;

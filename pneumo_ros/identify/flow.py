@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 COEFFICIENTS = ("arctan_flow.filling_coefficient", "arctan_flow.exhaust_coefficient")
 LIMITS = ("dead_zone.right_limit", "dead_zone.left_limit")
-_RELATIVE = 2e-3  # of a flow: what steadiness and noise leave of a window's mass balance
+_RELATIVE = 1e-4  # of a flow: what steadiness leaves of a window's mass balance at best
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,16 @@ def measured_flow(model: Model, window: Window) -> tuple[float, float]:
     return into_a, into_b
 
 
+def flow_noise(model: Model, window: Window) -> tuple[float, float]:
+    """Deviation of `measured_flow` by sensor noise [kg/s]: that of V p' / (gamma R T), which outweighs the others."""
+    per_volume = window.slope_noise / (
+        model["air.heat_capacity_ratio"] * model["air.gas_constant"] * model["air.temperature"]
+    )
+    volume_a = model["chambers.volume_a"] + model["piston.area_a"] * window.position
+    volume_b = model["chambers.volume_b"] - model["piston.area_b"] * window.position
+    return per_volume * volume_a, per_volume * volume_b
+
+
 def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
     """Fit both flow coefficients and, where slow voltages were used, the dead zone's limits, on the used windows.
 
@@ -53,13 +63,14 @@ def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
         states[:, column] = [getattr(w, key) for w in used]
     held = np.array([w.input for w in used])
     flows = np.array([measured_flow(model, w) for w in used])
+    spread = np.hypot([flow_noise(model, w) for w in used], _RELATIVE * np.abs(flows))
     scale = np.array([model[name] for name in names])
 
     def residuals(x: Array) -> Array:
         variant = model.with_parameters(dict(zip(names, (x * scale).tolist(), strict=True)))
         seen = variant.outputs(states, held)
         claimed = np.stack([seen["port_flow_a"], seen["port_flow_b"]], axis=1)
-        return np.asarray(((claimed - flows) / (_RELATIVE * np.abs(flows).mean(axis=0))).ravel())
+        return np.asarray(((claimed - flows) / spread).ravel())
 
     solution = least_squares(residuals, np.ones(len(names)), bounds=(0.2, 5.0), loss="soft_l1", f_scale=3.0)
     groups = [w.run for w in used for _ in "ab"]

@@ -1,9 +1,10 @@
 """Refit of a whole model to recordings by multiple shooting (Bock 1983).
 
 Every run is cut into segments whose initial states are free; each segment is simulated from its own start, and all
-starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. Then
-the few segments that fit far worse than the rest, breakaways caught in the wrong moment, are left out once. The starts are eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all
-perturbed simulations of one iteration run as lanes.
+starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. The few
+segments that fit far worse than the rest, breakaways caught in the wrong moment, are left out. The starts are
+eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all perturbed
+simulations of one iteration run as lanes.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -175,7 +176,7 @@ class _Problem:
         return np.where(theta + steps > self.high, -steps, steps)
 
     def solve(self, progress: Progress) -> tuple[Array, list[float]]:
-        """Rounds of Levenberg-Marquardt and of reseating starts, until neither helps; parameters and course of the cost.
+        """Rounds of Levenberg-Marquardt and of reseating starts, until neither helps; parameters and costs on the way.
 
         A segment whose breakaway is predicted too early or too late sits in a valley of its own, which no descent
         leaves: between rounds every segment's start is fitted afresh from its guess, and the better of both is kept.
@@ -277,7 +278,7 @@ def _loss(residuals: Array) -> Array:
 
 
 def _weight(residuals: Array) -> Array:
-    return np.minimum(1.0, TAIL / np.maximum(np.abs(residuals), 1e-300))
+    return np.asarray(np.minimum(1.0, TAIL / np.maximum(np.abs(residuals), 1e-300)))
 
 
 def _eliminate(A: Array, B: Array, C: Array, g: Array, h: Array) -> tuple[Array, Array]:

@@ -1,5 +1,7 @@
 """Stretches of constant velocity and constant pressures, found without being told where they are."""
 
+import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +38,7 @@ class Window:
     friction: float  # [N], drive - load - M a
     friction_noise: float  # [N], standard deviation by sensor noise
     velocity_noise: float  # [m/s], likewise
+    slope_noise: float  # [Pa/s], likewise, of either chamber; NaN when force-driven
     refused: str  # empty when used
 
     @property
@@ -49,7 +52,7 @@ def find_windows(model: Model, run: Run, window: float = WINDOW) -> list[Window]
     width = max(round(window / run.sample_time), 8)
     edges = np.flatnonzero(np.diff(run.held) != 0.0) + 1
     bounds = np.concatenate([[0], edges, [len(run) - 1]])
-    starts = [s for a, b in zip(bounds[:-1], bounds[1:], strict=True) for s in range(int(a), int(b) - width + 1, width)]
+    starts = [s for a, b in itertools.pairwise(bounds) for s in range(int(a), int(b) - width + 1, width)]
     if not starts:
         return []
     return _judge(model, run, np.array(starts), width)
@@ -57,7 +60,7 @@ def find_windows(model: Model, run: Run, window: float = WINDOW) -> list[Window]
 
 def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> list[Window]:
     rows = starts[:, None] + np.arange(width + 1)
-    time = (np.arange(width + 1) - 0.5 * width) * run.sample_time
+    time: Array = np.asarray((np.arange(width + 1) - 0.5 * width) * run.sample_time, dtype=np.float64)
     motion = np.polynomial.polynomial.polyfit(time, run.position[rows].T, 2)  # (3, windows)
     a, b = (_line(time, signal, rows) for signal in (run.pressure_a, run.pressure_b))
     position, velocity, acceleration = motion[0], motion[1], 2.0 * motion[2]
@@ -67,19 +70,37 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
     friction = drive - load - model["piston.mass"] * acceleration
     span = width * run.sample_time
     refused = _reasons(model, run, rows, position, velocity, acceleration * span, swing * span, drive - load)
-    columns = (position, velocity, acceleration, a[0], b[0], a[1], b[1], friction)
     return [
         Window(
-            run.name, s * run.sample_time, (s + width) * run.sample_time, float(u), *map(float, row), *noise, reason
+            run=run.name,
+            start=float(s * run.sample_time),
+            stop=float((s + width) * run.sample_time),
+            input=float(held[i]),
+            position=float(position[i]),
+            velocity=float(velocity[i]),
+            acceleration=float(acceleration[i]),
+            pressure_a=float(a[0, i]),
+            pressure_b=float(b[0, i]),
+            slope_a=float(a[1, i]),
+            slope_b=float(b[1, i]),
+            friction=float(friction[i]),
+            friction_noise=noise[0],
+            velocity_noise=noise[1],
+            slope_noise=noise[2],
+            refused=refused[i],
         )
-        for s, u, row, reason in zip(starts, held, zip(*columns, strict=True), refused, strict=True)
-    ]  # fmt: skip
+        for i, s in enumerate(starts)
+    ]
 
 
 def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
     if signal is None:
         return np.full((2, len(rows)), np.nan)
-    return np.asarray(np.polynomial.polynomial.polyfit(time, signal[rows].T, 1))
+    # A least-squares slope of position is the velocity's mean under a parabola; pressures are averaged likewise, so
+    # that what changes during a window does not bias the force against the velocity.
+    weight = 1.0 - (time / (time[-1] + time[1] - time[0])) ** 2
+    mean = signal[rows] @ weight / weight.sum()
+    return np.stack([mean, np.polynomial.polynomial.polyfit(time, signal[rows].T, 1)[1]])
 
 
 def _forces(
@@ -96,14 +117,16 @@ def _forces(
     return seen["drive"], seen["force"], swing
 
 
-def _noise(model: Model, run: Run, width: int) -> tuple[float, float]:
-    """Standard deviations by sensor noise of a window's friction force [N] and velocity [m/s]."""
+def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
+    """Deviations by sensor noise of a window's friction force [N], velocity [m/s] and pressure slope [Pa/s]."""
     noise, span = run_noise(run), width * run.sample_time
     parts = [model["piston.mass"] * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
     if not model.force_driven:
         for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
-            parts.append(model[f"piston.{area}"] * noise[name] / np.sqrt(width))
-    return float(np.sqrt(np.sum(np.square(parts)))), float(noise["position_m"] * np.sqrt(12.0 / width) / span)
+            parts.append(model[f"piston.{area}"] * noise[name] * np.sqrt(1.2 / width))
+    slope = np.sqrt(12.0 / width) / span  # of a line through white noise of unit size
+    steepest = max(noise.get("pressure_a_pa", np.nan), noise.get("pressure_b_pa", np.nan))
+    return float(np.sqrt(np.sum(np.square(parts)))), float(noise["position_m"] * slope), float(steepest * slope)
 
 
 def _reasons(
@@ -112,7 +135,7 @@ def _reasons(
 ) -> list[str]:  # fmt: skip
     span = (rows.shape[1] - 1) * run.sample_time
     speed, edge = np.abs(velocity), 0.5 * model["piston.stroke"] - _EDGE
-    tests = (
+    tests: tuple[tuple[NDArray[np.bool_], Callable[[int], str]], ...] = (
         (~run.measured[rows].all(axis=1), lambda i: "a gap in the recording"),
         (np.abs(run.position[rows]).max(axis=1) > edge, lambda i: "at the end of the stroke"),
         (speed * span < TRAVEL, lambda i: f"the piston rests or creeps ({1e3 * speed[i]:.2f} mm/s)"),
