@@ -86,7 +86,8 @@ class _Rewriter(ast.NodeTransformer):
     def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST:
         if node.value is None:
             return ast.Pass()
-        assignment: ast.AST = self.visit(ast.Assign(targets=[node.target], value=node.value))
+        plain = ast.copy_location(ast.Assign(targets=[node.target], value=node.value), node)
+        assignment: ast.AST = self.visit(plain)
         return assignment
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
