@@ -31,8 +31,9 @@ def read_machine(name_or_path: str | Path) -> tuple[str, str]:
         if not path.is_file() and path.name == str(name_or_path) and shipped.is_file():
             return path.name, shipped.read_text(encoding="utf-8")
         return path.stem, path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
+    except (OSError, ValueError) as error:
+        text = "it is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else "that is no name of a file"
+        reason = error.strerror if isinstance(error, OSError) else text
         raise DataError(
             f"machine file {name_or_path} cannot be read ({reason}); "
             f"give a YAML file or one of: {', '.join(shipped_machines())}"
@@ -89,6 +90,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
     listed = given.get("effects")
     if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
         raise UsageError(f"'effects' is {brief(listed)}; it takes a list of names, such as [dead_zone, arctan_flow]")
+    listed = [name for name in listed if name]
     sections = {key: value for key, value in given.items() if key != "effects"}
     frame = (
         FRAME
@@ -118,7 +120,8 @@ def _number(value: object) -> object:
 
 def machine_text(model: Model) -> str:
     """The machine file of a model, with unit and meaning beside every value."""
-    lines = ["/**:", "  ros__parameters:", f"    effects: [{', '.join(model.effects)}]"]
+    effects = ", ".join(model.effects) or '""'  # ROS cannot tell the type of an empty list
+    lines = ["/**:", "  ros__parameters:", f"    effects: [{effects}]"]
     section = ""
     for dotted, value in model.parameters.items():
         owner, _, key = dotted.partition(".")
