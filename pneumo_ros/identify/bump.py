@@ -29,8 +29,9 @@ class Bump:
         phi = c**6 / np.sum(c**6)
         first = -tau * c**5
         first /= -np.sum(first * tau) * span  # exact for a constant rate, however few the samples
-        second = (-12.0 * c**5 + 120.0 * tau**2 * c**4) / (span**2 * np.sum(c**6))
-        second -= np.sum(second) * phi  # exact for a constant
+        second = -12.0 * c**5 + 120.0 * tau**2 * c**4
+        second -= np.sum(second) * phi
+        second /= 0.5 * np.sum(second * tau**2) * span**2  # exact for a constant acceleration
         return cls(2 * half + 1, phi, first, second)
 
     def coarseness(self, factor: float) -> float:
