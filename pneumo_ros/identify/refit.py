@@ -298,4 +298,4 @@ def _bootstrap(reduced: Array, gradient: Array, count: int) -> Array:
     rng = np.random.default_rng(0)
     weights = rng.multinomial(len(reduced), np.full(len(reduced), 1.0 / len(reduced)), _RESAMPLES).astype(float)
     matrices = np.tensordot(weights, reduced, 1) + np.eye(count)
-    return -np.linalg.solve(matrices, (weights @ gradient)[..., None])[..., 0]
+    return np.asarray(-np.linalg.solve(matrices, (weights @ gradient)[..., None])[..., 0])

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,7 +136,7 @@ def _reasons(
 ) -> list[str]:  # fmt: skip
     span = (rows.shape[1] - 1) * run.sample_time
     speed, edge = np.abs(velocity), 0.5 * model["piston.stroke"] - _EDGE
-    tests: tuple[tuple[NDArray[np.bool_], Callable[[int], str]], ...] = (
+    tests: tuple[tuple[Any, Callable[[int], str]], ...] = (
         (~run.measured[rows].all(axis=1), lambda i: "a gap in the recording"),
         (np.abs(run.position[rows]).max(axis=1) > edge, lambda i: "at the end of the stroke"),
         (speed * span < TRAVEL, lambda i: f"the piston rests or creeps ({1e3 * speed[i]:.2f} mm/s)"),
