@@ -5,7 +5,8 @@ from pneumo_ros.records.bag_writer import BagWriter
 from pneumo_ros.records.metadata import BagTopic
 from pneumo_ros.records.reading import read_recording
 from pneumo_ros.records.recording import Recording
-from pneumo_ros.records.topics import TopicData, read_topics
+from pneumo_ros.records.topic_data import TopicData
+from pneumo_ros.records.topics import read_topics
 from pneumo_ros.records.writing import write_recording
 
 __all__ = [

@@ -12,7 +12,7 @@ from mcap.writer import Writer
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.growing_file import GrowingFile
-from pneumo_ros.records.mcap_file import LIBRARY
+from pneumo_ros.records.mcap_registry import LIBRARY
 from pneumo_ros.records.message_types import definition_of
 from pneumo_ros.records.metadata import BagTopic, Contents, as_yaml, information, write_metadata
 

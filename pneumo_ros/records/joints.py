@@ -11,7 +11,7 @@ from pneumo_ros.records.block import Integers
 from pneumo_ros.records.contract import JOINT
 from pneumo_ros.records.recording import Array
 from pneumo_ros.records.series import Series
-from pneumo_ros.records.topics import TopicData
+from pneumo_ros.records.topic_data import TopicData
 
 FIELDS = ("position", "velocity", "effort")
 

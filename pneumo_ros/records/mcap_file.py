@@ -7,23 +7,18 @@ Format: https://mcap.dev/spec. The records are walked here and not by `mcap.read
 import struct
 import zlib
 from collections.abc import Iterator
-from io import BytesIO
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 
 import numpy as np
-import yaml
-from mcap import records
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records.block import Block, Buffer, Channel, Integers, gather
 from pneumo_ros.records.compression import decompress
+from pneumo_ros.records.mcap_registry import Registry
 
 MAGIC = b"\x89MCAP0\r\n"
-LIBRARY = "pneumo_ros"  # how files written here name their writer
 LOOSE_MESSAGES = 65536  # messages outside chunks that make one block
 
 _PREFIX = struct.Struct("<BQ")  # of every record: opcode, length
@@ -40,48 +35,61 @@ class McapFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.channels: dict[int, Channel] = {}
         self.warnings: list[str] = []
-        self._schemas: dict[int, records.Schema] = {}
-        self._damaged = 0
-        self._library = ""
+        self._registry = Registry()
+        self._damaged = 0  # chunks
         self._data = _open(path)
+
+    @property
+    def channels(self) -> dict[int, Channel]:
+        """Channels found so far, by the number that messages name them by."""
+        return self._registry.channels
 
     def blocks(self) -> Iterator[Block]:
         """Messages of every readable chunk, and those outside chunks, in the order of the file."""
-        size = len(self._data)
         loose: list[int] = []
-        position, closed = len(MAGIC), False
-        while position + _PREFIX.size <= size and not closed:
-            opcode, length = _PREFIX.unpack_from(self._data, position)
-            body, following = position + _PREFIX.size, position + _PREFIX.size + length
-            if opcode == 0 or (following > size and opcode != Opcode.CHUNK):
-                break
+        end, closed = len(MAGIC), False
+        for opcode, start, end in self._records():
             if opcode == Opcode.CHUNK:
-                yield from self._chunk(body, min(following, size))
+                yield from self._chunk(start, min(end, len(self._data)))
             elif opcode == Opcode.MESSAGE:
-                loose.append(position)
+                loose.append(start - _PREFIX.size)
             else:
-                self._register(opcode, self._data[body:following])
+                self._registry.take(opcode, self._data[start:end])
                 closed = opcode == Opcode.FOOTER
             if len(loose) >= LOOSE_MESSAGES:
                 yield self._block(self._data, np.array(loose))
                 loose.clear()
-            position = following
         if loose:
             yield self._block(self._data, np.array(loose))
-        self._report(closed, position)
+        self._report(closed, min(end, len(self._data)))
 
-    def _report(self, closed: bool, position: int) -> None:
+    def _records(self) -> Iterator[tuple[int, int, int]]:
+        """Opcode, start and end of the body of each record up to the footer or a break; a chunk may be cut."""
+        position, size = len(MAGIC), len(self._data)
+        opcode = -1
+        while opcode != Opcode.FOOTER and position + _PREFIX.size <= size:
+            opcode, length = _PREFIX.unpack_from(self._data, position)
+            start = position + _PREFIX.size
+            position = start + length
+            if opcode == 0 or (position > size and opcode != Opcode.CHUNK):
+                return
+            yield opcode, start, position
+
+    def _report(self, closed: bool, read: int) -> None:
         """Say in words what could not be read."""
         if not closed:
-            at = min(position, len(self._data))
             self.warnings.append(
-                f"{self.path.name} breaks off after {at} bytes without its end record: its recorder was killed "
+                f"{self.path.name} breaks off after {read} bytes without its end record: its recorder was killed "
                 "or the file was cut. Everything up to the break is read."
             )
-        if self._damaged:
-            parts = "1 part is" if self._damaged == 1 else f"{self._damaged} parts are"
+        if self._registry.unfinished:
+            self.warnings.append(
+                f"{self.path.name}: its recorder was killed before it could close the file; "
+                "up to the last second may be missing."
+            )
+        if damaged := self._damaged + self._registry.unreadable:
+            parts = "1 part is" if damaged == 1 else f"{damaged} parts are"
             self.warnings.append(f"{self.path.name}: {parts} damaged; only what is intact there is read.")
 
     def _chunk(self, start: int, stop: int) -> Iterator[Block]:
@@ -89,22 +97,23 @@ class McapFile:
         if start + _CHUNK.size > stop:
             return
         _, _, size, checksum, letters = _CHUNK.unpack_from(self._data, start)
-        packed_at = start + _CHUNK.size + letters + _LENGTH.size
-        if packed_at > stop:
+        name = start + _CHUNK.size
+        content = name + letters + _LENGTH.size
+        if content > stop:
             return
-        compression = bytes(self._data[start + _CHUNK.size : packed_at - _LENGTH.size]).decode(errors="replace")
-        (packed,) = _LENGTH.unpack_from(self._data, packed_at - _LENGTH.size)
-        complete = packed_at + packed <= stop
-        with memoryview(self._data) as view, view[packed_at : min(packed_at + packed, stop)] as content:
-            data = decompress(content, compression, size, self.path)
-        if complete and (len(data) != size or (checksum and zlib.crc32(data) != checksum)):
+        compression = bytes(self._data[name : name + letters]).decode(errors="replace")
+        (packed,) = _LENGTH.unpack_from(self._data, name + letters)
+        with memoryview(self._data) as view, view[content : min(content + packed, stop)] as given:
+            data = decompress(given, compression, size, self.path)
+        whole = len(data) == size
+        if content + packed <= stop and not (whole and (not checksum or zlib.crc32(data) == checksum)):
             self._damaged += 1
-            if len(data) == size:  # something in it is wrong and nothing tells what
+            if whole:  # something in it is wrong, and nothing tells what
                 return
         yield self._block(data, self._walk(data))
 
     def _walk(self, data: bytes) -> Integers:
-        """Positions of the whole message records of a chunk; its schemas and channels are registered."""
+        """Positions of the whole message records of a chunk; its other records are taken note of."""
         positions: list[int] = []
         found, length_at = positions.append, _LENGTH.unpack_from
         position, last = 0, len(data) - _PREFIX.size
@@ -114,11 +123,11 @@ class McapFile:
         if position > len(data):  # the last record is cut
             positions.pop()
         starts = np.array(positions, dtype=np.int64)
-        opcodes = np.frombuffer(data, dtype=np.uint8)[starts]
-        for start in starts[opcodes != Opcode.MESSAGE].tolist():
+        is_message = gather(data, starts, 1).view(np.uint8) == Opcode.MESSAGE
+        for start in starts[~is_message].tolist():
             opcode, length = _PREFIX.unpack_from(data, start)
-            self._register(opcode, data[start + _PREFIX.size : start + _PREFIX.size + length])
-        messages: Integers = starts[opcodes == Opcode.MESSAGE]
+            self._registry.take(opcode, data[start + _PREFIX.size : start + _PREFIX.size + length])
+        messages: Integers = starts[is_message]
         return messages
 
     def _block(self, data: Buffer, positions: Integers) -> Block:
@@ -137,52 +146,6 @@ class McapFile:
             positions + _MESSAGE.itemsize,
             heads["length"].astype(np.int64) - _LEAST,
         )
-
-    def _register(self, opcode: int, body: bytes) -> None:
-        """Take note of what a record says about the messages; the other kinds are not needed."""
-        stream = ReadDataStream(BytesIO(body))
-        try:
-            if opcode == Opcode.SCHEMA:
-                schema = records.Schema.read(stream)
-                self._schemas[schema.id] = schema
-            elif opcode == Opcode.CHANNEL:
-                channel = records.Channel.read(stream)
-                self.channels[channel.id] = self._describe(channel)
-            elif opcode == Opcode.HEADER:
-                self._library = records.Header.read(stream).library
-            elif opcode == Opcode.FOOTER:
-                self._note_end(records.Footer.read(stream))
-        except (McapError, struct.error, UnicodeDecodeError):
-            self._damaged += 1
-
-    def _note_end(self, footer: records.Footer) -> None:
-        """A recorder of ours that was killed leaves a valid file, but one without a summary."""
-        if self._library.startswith(LIBRARY) and footer.summary_start == 0:
-            self.warnings.append(
-                f"{self.path.name}: its recorder was killed before it could close the file; "
-                "up to the last second may be missing."
-            )
-
-    def _describe(self, channel: records.Channel) -> Channel:
-        """The channel with the words of its schema."""
-        schema = self._schemas.get(channel.schema_id, records.Schema(0, b"", "", ""))
-        return Channel(
-            channel.topic,
-            schema.name,
-            channel.message_encoding,
-            schema.encoding,
-            schema.data.decode(errors="replace"),
-            is_latched(channel.metadata.get("offered_qos_profiles", "")),
-        )
-
-
-def is_latched(profiles: str) -> bool:
-    """Whether one of the YAML quality-of-service `profiles` is transient local (rosbag2 writes the name or a 1)."""
-    try:
-        offered = yaml.safe_load(profiles) or []
-    except yaml.YAMLError:
-        return False
-    return any(isinstance(one, dict) and one.get("durability") in (1, "transient_local") for one in offered)
 
 
 def _open(path: Path) -> mmap:

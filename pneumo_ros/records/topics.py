@@ -1,82 +1,20 @@
 """The messages of a recording as columns: one array per topic and field, decoded in bulk."""
 
 from collections.abc import Callable, Iterable
-from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from rosbags.typesys.store import Typestore
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.bag import Bag
 from pneumo_ros.records.block import Block, Channel, Integers, gather
-from pneumo_ros.records.layout import Layout, Leaf, leaves
-from pneumo_ros.records.message_types import channel_types, deserialize
+from pneumo_ros.records.layout import Layout, leaves
+from pneumo_ros.records.message_types import channel_types
+from pneumo_ros.records.topic_data import Part, TopicData
 
 MOST_LAYOUTS = 64  # of one topic; beyond, its messages are deserialized one by one
-
-
-class Part(NamedTuple):
-    """Messages of one layout and their places among the messages of the topic, in the order of the file."""
-
-    layout: Layout
-    rows: NDArray[np.void]
-    places: Integers
-
-
-class TopicData:
-    """Messages of one topic in the order of recorded time; `data["header.stamp.sec"]` is a column, made when asked for.
-
-    A column has shape (n,) for numbers and strings, (n, k) for arrays and for sequences that are equally long in all
-    messages; else it holds one object per message. Strings are `str`, arrays of messages are lists.
-    """
-
-    def __init__(self, channel: Channel, log_time: Integers, parts: list[Part], odd: dict[int, bytes]) -> None:
-        """`log_time` (n,) [ns] in the order of the file; `odd` are messages, by place, that no layout describes."""
-        self.name, self.type = channel.topic, channel.type
-        self._store = channel_types(channel)
-        self._leaves = {leaf.path: leaf for leaf in leaves(self._store, channel.type)}
-        self._parts, self._odd = parts, odd
-        # Recorders write in the order of arrival; several files or clocks may still overlap.
-        self._order = None if np.all(log_time[1:] >= log_time[:-1]) else np.argsort(log_time, kind="stable")
-        self.log_time = log_time if self._order is None else log_time[self._order]
-
-    def __len__(self) -> int:
-        return len(self.log_time)
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """Names of the columns."""
-        return tuple(self._leaves)
-
-    def __getitem__(self, field: str) -> NDArray[Any]:
-        if field not in self._leaves:
-            raise DataError(f"{self.name} ({self.type}): {unknown_name('field', field, self._leaves)}")
-        leaf = self._leaves[field]
-        pieces = [(part.places, _values(part, leaf)) for part in self._parts]
-        pieces += [(np.array([place]), _single(value, leaf)) for place, value in self._odd_values(field)]
-        column = _join(pieces, len(self), leaf)
-        return column if self._order is None else column[self._order]
-
-    @property
-    def stamp(self) -> Integers:
-        """Header stamps (n,) [ns]. Raises DataError when the messages have none."""
-        stamp: Integers = self["header.stamp.sec"].astype(np.int64) * 1_000_000_000 + self["header.stamp.nanosec"]
-        return stamp
-
-    @cached_property
-    def _odd_messages(self) -> dict[int, Any]:
-        """Messages without a layout, deserialized one by one."""
-        return {place: deserialize(self._store, payload, self.type) for place, payload in self._odd.items()}
-
-    def _odd_values(self, field: str) -> Iterable[tuple[int, Any]]:
-        for place, content in self._odd_messages.items():
-            for name in field.split("."):
-                content = getattr(content, name)
-            yield place, content
 
 
 class Collector:
@@ -84,8 +22,7 @@ class Collector:
 
     def __init__(self, channel: Channel) -> None:
         self.channel = channel
-        self._store: Typestore = channel_types(channel)
-        self._leaves = leaves(self._store, channel.type)
+        self._leaves = leaves(channel_types(channel), channel.type)
         self._bulk = all(leaf.base != "message" for leaf in self._leaves)
         self._log_times: list[Integers] = []
         self._taken = 0
@@ -183,38 +120,3 @@ def _by_channel(block: Block) -> Iterable[tuple[Channel, Integers]]:
     """The channels of a block and the indices of their messages."""
     for number in np.unique(block.channel).tolist():
         yield block.channels[number], np.flatnonzero(block.channel == number)
-
-
-def _values(part: Part, leaf: Leaf) -> NDArray[Any]:
-    """Column of one part."""
-    if leaf.base != "string":
-        return part.rows[leaf.path].astype(leaf.dtype)
-    column = np.empty(len(part.rows), dtype=object)
-    column.fill(part.layout.texts[leaf.path])
-    return column
-
-
-def _single(value: Any, leaf: Leaf) -> NDArray[Any]:
-    """Column of one message."""
-    if leaf.base not in ("string", "message"):
-        return np.asarray(value, dtype=leaf.dtype)[np.newaxis]
-    column = np.empty(1, dtype=object)
-    column[0] = tuple(value) if leaf.base == "string" and not isinstance(value, str) else value
-    return column
-
-
-def _join(pieces: list[tuple[Integers, NDArray[Any]]], count: int, leaf: Leaf) -> NDArray[Any]:
-    """One column of `count` values from pieces, each with the places it goes to."""
-    shapes = {values.shape[1:] for _, values in pieces}
-    if len(pieces) == 1:  # a single piece is in order
-        return pieces[0][1]
-    if len(shapes) > 1:
-        column = np.empty(count, dtype=object)
-        for places, values in pieces:
-            for place, value in zip(places.tolist(), values, strict=True):
-                column[place] = value
-        return column
-    column = np.empty((count, *(shapes.pop() if shapes else leaf.shape)), dtype=leaf.dtype)
-    for places, values in pieces:
-        column[places] = values
-    return column

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from records.axis_bag import SIGNALS, STAMP, N, streams, write
 from records.making import START, STORE, serialized, write_rosbags
-from records.test_reading import SIGNALS, STAMP, N, streams, write
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import BagWriter, encoding, read_recording, read_topics

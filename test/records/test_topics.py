@@ -8,7 +8,7 @@ from mcap.writer import CompressionType, Writer
 from records.making import START, STORE, assert_same, by_rosbags, interleaved, random_message, serialized, write_rosbags
 
 from pneumo_ros.errors import DataError
-from pneumo_ros.records import read_topics, topics
+from pneumo_ros.records import read_topics, topic_data
 from pneumo_ros.records.contract import GLOBAL_TYPES, TYPES
 from pneumo_ros.records.message_types import trimmed
 from pneumo_ros.records.topics import MOST_LAYOUTS
@@ -76,7 +76,7 @@ def test_messages_that_differ_in_numbers_only_are_decoded_in_bulk(
     path = write_rosbags(tmp_path / "bag", interleaved(CONTRACT, 50, repeat=True))
     expected = by_rosbags(path)
     one_by_one: list[str] = []
-    monkeypatch.setattr(topics, "deserialize", lambda store, payload, kind: one_by_one.append(kind))
+    monkeypatch.setattr(topic_data, "deserialize", lambda store, payload, kind: one_by_one.append(kind))
     bulk = {name: data for name, data in read_topics(path).items() if "Trajectory" not in data.type}
     bulk = {name: data for name, data in bulk.items() if "Diagnostic" not in data.type}
     assert_same(bulk, {name: expected[name] for name in bulk})

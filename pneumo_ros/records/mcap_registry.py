@@ -1,0 +1,64 @@
+"""What the records of an MCAP file say about its messages: channels with their schemas, and how it was written."""
+
+import struct
+from io import BytesIO
+
+import yaml
+from mcap import records
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+
+from pneumo_ros.records.block import Channel
+
+LIBRARY = "pneumo_ros"  # how files written here name their writer
+
+
+class Registry:
+    """Fills with every record that `take` is given."""
+
+    def __init__(self) -> None:
+        self.channels: dict[int, Channel] = {}
+        self.unfinished = False  # written here, by a recorder that was killed: the file is valid but has no summary
+        self.unreadable = 0  # records
+        self._schemas: dict[int, records.Schema] = {}
+        self._library = ""
+
+    def take(self, opcode: int, body: bytes) -> None:
+        """Take note of a record; kinds that say nothing about messages are passed over."""
+        stream = ReadDataStream(BytesIO(body))
+        try:
+            if opcode == Opcode.SCHEMA:
+                schema = records.Schema.read(stream)
+                self._schemas[schema.id] = schema
+            elif opcode == Opcode.CHANNEL:
+                channel = records.Channel.read(stream)
+                self.channels[channel.id] = self._describe(channel)
+            elif opcode == Opcode.HEADER:
+                self._library = records.Header.read(stream).library
+            elif opcode == Opcode.FOOTER:
+                no_summary = records.Footer.read(stream).summary_start == 0
+                self.unfinished = no_summary and self._library.startswith(LIBRARY)
+        except (McapError, struct.error, UnicodeDecodeError):
+            self.unreadable += 1
+
+    def _describe(self, channel: records.Channel) -> Channel:
+        """The channel with the words of its schema."""
+        schema = self._schemas.get(channel.schema_id, records.Schema(0, b"", "", ""))
+        return Channel(
+            channel.topic,
+            schema.name,
+            channel.message_encoding,
+            schema.encoding,
+            schema.data.decode(errors="replace"),
+            _latches(channel.metadata.get("offered_qos_profiles", "")),
+        )
+
+
+def _latches(profiles: str) -> bool:
+    """Whether one of the YAML quality-of-service `profiles` is transient local (rosbag2 writes the name or a 1)."""
+    try:
+        offered = yaml.safe_load(profiles) or []
+    except yaml.YAMLError:
+        return False
+    return any(isinstance(one, dict) and one.get("durability") in (1, "transient_local") for one in offered)

@@ -1,0 +1,106 @@
+"""The signals of one axis in a recording, each as it was recorded but cleaned."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.records import contract
+from pneumo_ros.records.bag import Bag
+from pneumo_ros.records.block import Channel
+from pneumo_ros.records.joints import joint_series
+from pneumo_ros.records.namespaces import check_types, choose_namespace
+from pneumo_ros.records.series import Series, finite, increasing, on_clock_of
+from pneumo_ros.records.topics import collect
+
+FEWEST = 2  # samples that make a time base
+
+
+class Signals:
+    """Topics of the axis in `namespace`; what was wrong with them is said in `warnings`."""
+
+    def __init__(self, path: Path, namespace: str | None, joint_name: str | None) -> None:
+        """Read the recording. Raises DataError when it cannot be read, or does not say where the piston is."""
+        self.path = path
+        bag = Bag(path)
+        found, types = collect(bag, _is_signal)
+        self.warnings = list(bag.warnings)
+        if not types:
+            raise DataError(" ".join([f"{path} holds no messages.", *self.warnings]))
+        self.namespace = choose_namespace(path, types, namespace)
+        check_types(types, self.namespace)
+        self._topics = {
+            name: data for topic, data in found.items() if (name := _name(topic, self.namespace)) is not None
+        }
+        self.joint_name, self.joints = self._joint_states(joint_name)
+
+    @property
+    def topics(self) -> list[str]:
+        """Names of the axis' topics, as recorded."""
+        return sorted(data.name for data in self._topics.values())
+
+    def pressure(self, name: str) -> Series | None:
+        """Pressures of one topic in increasing time; None when there are none."""
+        data = self._topics.get(name)
+        if data is None:
+            return None
+        series = Series(data.name, data.stamp, data.log_time, {"fluid_pressure": data["fluid_pressure"]})
+        series = increasing(finite(series, "fluid_pressure", self.warn), self.warn)
+        return series if len(series) else None
+
+    def commands(self) -> Series | None:
+        """Valve commands at their recorded times, on the clock of the joint states; None when there are none."""
+        data = self._topics.get(contract.COMMAND)
+        if data is None:
+            return None
+        stamp = on_clock_of(self.joints, data.log_time, self.warn)
+        series = finite(Series(data.name, stamp, data.log_time, {"data": data["data"]}), "data", self.warn)
+        return series if len(series) else None
+
+    def description(self) -> dict[str, Any] | None:
+        """The last description of the plant; None, with a warning, when it is not what it should be."""
+        data = self._topics.get(contract.DESCRIPTION)
+        content = None if data is None else _json_object(data["data"][-1])
+        if data is not None and content is None:
+            self.warn(f"{data.name}: the last one is no JSON object; it is not used.")
+        return content
+
+    def warn(self, sentence: str) -> None:
+        """Add to the warnings."""
+        self.warnings.append(sentence)
+
+    def _joint_states(self, joint_name: str | None) -> tuple[str, Series]:
+        """Name of the joint and its states in increasing time, with a position in each."""
+        data = self._topics[contract.JOINT_STATES]
+        joint, series = joint_series(data, joint_name)
+        series = increasing(finite(series, "position", self.warn), self.warn)
+        if contract.COMMAND not in self._topics and np.isfinite(series.values["effort"]).any():
+            series = finite(series, "effort", self.warn)
+        if len(series) < FEWEST:
+            raise DataError(
+                f"{self.path}: {data.name} gives {len(series)} positions of '{joint}' out of {len(data)} messages."
+            )
+        return joint, series
+
+
+def _json_object(text: str) -> dict[str, Any] | None:
+    """The object that `text` is in JSON."""
+    try:
+        content = json.loads(text)
+    except json.JSONDecodeError:
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def _is_signal(channel: Channel) -> bool:
+    """Whether a channel can be part of a Recording."""
+    found = contract.split(channel.topic)
+    return found is not None and found[1] in contract.SIGNALS
+
+
+def _name(topic: str, namespace: str) -> str | None:
+    """Contract name of a topic of the axis in `namespace`; None for one of another axis."""
+    found = contract.split(topic)
+    return found[1] if found and found[0] == namespace else None
