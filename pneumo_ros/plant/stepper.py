@@ -1,9 +1,11 @@
 """Stepping a plant that runs on: for nodes and closed loops, where parameters and effects may change under way."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.errors import NumericalError
+from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.plant.model import STEP, Model, substeps
 
 
@@ -32,7 +34,10 @@ class Stepper:
         """Hold `voltage` [V] for one sample; returns the state (states,), a view that the next call overwrites.
 
         Raises NumericalError when the state leaves the finite numbers; the stepper then still holds the last good one.
+        UsageError for a voltage that is no finite number.
         """
+        if not math.isfinite(voltage):
+            raise UsageError(f"voltage is {voltage}; it takes a finite number")
         self._voltage[0] = voltage
         before = self.state.copy()
         self._run(self.state, self._values, self._voltage, self.time, self._h, self._stride, 1, self._out)
