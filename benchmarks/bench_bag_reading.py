@@ -1,6 +1,6 @@
 """Reading a recording into arrays: `read_topics` against deserialising message by message with rosbags.
 
-    python benchmarks/bag_reading.py [--messages 200000] [--repetitions 3]
+    python benchmarks/bench_bag_reading.py [--messages 200000] [--repetitions 3]
 
 Makes a recording of a 1 kHz axis (joint states with velocity and effort, both pressures, valve commands), reads it both
 ways in turn, and prints medians and their ratio. The values are compared for every message and number.
