@@ -21,12 +21,18 @@ unexport PYTHONPATH PYTHONHOME LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport AMENT_PREFIX_PATH COLCON_PREFIX_PATH CMAKE_PREFIX_PATH
 unexport ROS_DISTRO ROS_VERSION ROS_PYTHON_VERSION RMW_IMPLEMENTATION
 
+CACHE := $(CURDIR)/.cache
+export TMPDIR := $(CACHE)/tmp
 ifeq ($(PIP_CACHE_DIR),)
-export PIP_CACHE_DIR := $(CURDIR)/.cache/pip
+export PIP_CACHE_DIR := $(CACHE)/pip
 endif
 # ROS writes its logs below the home folder, and refuses to start without one.
 ifeq ($(HOME)$(ROS_HOME),)
-export ROS_HOME := $(CURDIR)/.cache/ros
+export ROS_HOME := $(CACHE)/ros
+endif
+# Tests that read recordings of a rig find them here.
+ifneq ($(wildcard $(RIG)/healthy),)
+export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
 .PHONY: help demo test bench clean
@@ -35,7 +41,10 @@ endif
 help:
 	@sed -n '/^#/!q; s/^# \{0,1\}//p' Makefile
 
-$(READY): setup.py tools/make_venv
+.cache/tmp:
+	@mkdir -p $@
+
+$(READY): setup.py tools/make_venv | .cache/tmp
 	@tools/make_venv $(VENV) $(PYTHON)
 	@touch $@
 
@@ -50,16 +59,16 @@ endif
 	@rm -rf .cache/rig
 	@$(BIN)/python test/rig --out .cache/rig --runs holdout_steps --seed 1 --quiet
 
-demo: $(READY) $(MEASURED)
+demo: $(READY) $(MEASURED) | .cache/tmp
 	@$(BIN)/pneumo demo --recording $(MEASURED) $(DEMO)
 
-test: $(READY)
+test: $(READY) | .cache/tmp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest $(PYTEST)
 
-bench: $(READY)
+bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done
 
 clean:

@@ -26,17 +26,19 @@ def traffic(bag: Path) -> str:
 
 
 def hardship(bag: Path) -> str | None:
-    """A sentence when the simulator could not keep real time or lost the controller, by its own diagnostics."""
-    said = last_diagnostics(bag, "simulator")
-    late, ticks = float(said.get("late_ticks", 0)), float(said.get("ticks", 0))
-    dropped, closures = float(said.get("dropped_ms", 0)), int(said.get("valve_closures", 0))
-    if late <= LATE * ticks and not dropped and not closures:
+    """A sentence when nodes could not keep real time or missed each other, by their own diagnostics."""
+    simulator, controller, recorder = (last_diagnostics(bag, name) for name in ("simulator", "controller", "recorder"))
+    late = float(simulator.get("late_ticks", 0)) / max(float(simulator.get("ticks", 0)), 1.0)
+    facts = {
+        f"{100.0 * late:.1f} % of the simulator's ticks came over 1 ms late": late > LATE,
+        "the valve closed for lack of commands": float(simulator.get("valve_closures", 0)) > 0,
+        "measurements stayed away from the controller": float(controller.get("restarts", 1)) > 1,
+        "the recorder lost messages": float(recorder.get("lost_messages", 0)) > 0,
+    }
+    found = [fact for fact, holds in facts.items() if holds]
+    if not found:
         return None
-    closed = f", and the valve closed {closures} times for lack of commands" if closures else ""
-    return (
-        f"This machine was busy: {100.0 * late / max(ticks, 1.0):.1f} % of the simulator's ticks came over 1 ms late"
-        f"{closed}. The comparison below suffers from it; try again when less is running."
-    )
+    return f"This machine was busy: {', '.join(found)}. What follows suffers from it; try again when less is running."
 
 
 def last_diagnostics(bag: Path, node: str) -> dict[str, str]:
