@@ -32,11 +32,14 @@ class SourceBook:
         self.texts: list[str] = []
         self._names: dict[str, str] = {}  # definition text -> name
         self._taken: set[str] = set(_REPLACED)
+        self._written: dict[object, str] = {}  # function or its tree -> name
         self._open: list[Callable[..., Any]] = []  # helpers being written
 
     def add(self, function: Function, name: str, title: str) -> str:
         """Add an effect's function under `name`; `title` is what error messages call it."""
-        return self._define(function.tree, function.globals, name, title)
+        if function.tree not in self._written:
+            self._written[function.tree] = self._define(function.tree, function.globals, name, title)
+        return self._written[function.tree]
 
     def _define(self, tree: ast.FunctionDef, scope: dict[str, Any], name: str, title: str) -> str:
         body = _Rewriter(self, tree, scope, title).rewrite()
@@ -52,15 +55,17 @@ class SourceBook:
 
     def helper(self, function: Callable[..., Any], title: str) -> str:
         """Add a plain Python function that an effect calls."""
-        tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
-        if not isinstance(tree, ast.FunctionDef):
-            raise UsageError(f"{title} calls {function.__name__}, which is no plain function")
         if function in self._open:
             raise UsageError(f"{title} calls {function.__name__}, which calls itself; write a loop of fixed length")
-        self._open.append(function)
-        name = self._define(tree, function.__globals__, function.__name__, f"{title}, {function.__name__}")
-        self._open.pop()
-        return name
+        if function not in self._written:
+            tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+            if not isinstance(tree, ast.FunctionDef):
+                raise UsageError(f"{title} calls {function.__name__}, which is no plain function")
+            self._open.append(function)
+            name = self._define(tree, function.__globals__, function.__name__, f"{title}, {function.__name__}")
+            self._written[function] = name
+            self._open.pop()
+        return self._written[function]
 
 
 class _Rewriter(ast.NodeTransformer):
