@@ -13,7 +13,8 @@ sys.path.insert(0, str(TEST))  # the independent simulator under test/rig import
 # Before anything imports rclpy: nodes of this session, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()
 os.environ.update(DOMAIN.environment)
-os.environ.setdefault("ROS_LOG_DIR", tempfile.mkdtemp(prefix="pneumo_ros_log_"))
+LOGS = tempfile.TemporaryDirectory(prefix="pneumo_ros_log_")  # vanishes with the session
+os.environ["ROS_LOG_DIR"] = LOGS.name
 os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
 # The wheels start Python a second time to find their libraries; a Python of another environment must do so itself.
 os.environ.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)

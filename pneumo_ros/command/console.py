@@ -3,6 +3,7 @@
 import json
 import logging
 import math
+import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -54,6 +55,14 @@ class Console:
             sys.stdout.write(text)
         else:
             write_whole(self._json_path, text)
+
+
+def program() -> str:
+    """How to call this command again: by its name where the shell finds it, else as it was called."""
+    called = Path(sys.argv[0])
+    if called.name == "pneumo" and not shutil.which("pneumo"):
+        return str(called)
+    return "python -m pneumo_ros" if called.name == "__main__.py" else "pneumo"
 
 
 def plain(value: Any) -> Any:

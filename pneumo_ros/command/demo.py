@@ -11,7 +11,7 @@ from pneumo_ros.command.arguments import add_output
 from pneumo_ros.command.bag_summary import hardship, traffic
 from pneumo_ros.command.chart import chart
 from pneumo_ros.command.compare import equations_text, run_text
-from pneumo_ros.command.console import Console
+from pneumo_ros.command.console import Console, program
 from pneumo_ros.command.processes import Fleet
 from pneumo_ros.environment import require_ros
 from pneumo_ros.errors import DataError, PneumoError, UsageError
@@ -160,9 +160,8 @@ def judgement(comparison: "Comparison") -> str:
 
 
 def _farewell(bag: Path, other: str | None) -> str:
-    return (
-        f"Bag and logs are in {bag.parent}. Next:\n  pneumo compare {other or bag}\n  pneumo effects\n  pneumo --help"
-    )
+    verbs = (f"compare {other or bag}", "effects", "--help")
+    return "\n".join((f"Bag and logs are in {bag.parent}. Next:", *(f"  {program()} {verb}" for verb in verbs)))
 
 
 def _next_folder(parent: Path) -> Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros import __version__
 from pneumo_ros.command.arguments import add_model, add_output, chosen_model
-from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.console import Console, columns, program
 from pneumo_ros.command.inputs import FORMS, parse_drive
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     write_recording(options.out, **signals, **plan.commands, description=description)
     console.say(f"Simulated {model.name} for {plan.samples * plan.sample_time:g} s: {plan.text}")
     console.say(columns(extremes(signals), right=(1, 2, 3, 4)))
-    console.say(f"Written to {options.out}; see also: pneumo compare {options.out}")
+    console.say(f"Written to {options.out}; see also: {program()} compare {options.out}")
     console.json(
         {
             "schema_version": 1,

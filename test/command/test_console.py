@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pneumo_ros.command.console import Console, Progress, columns, plain
+from pneumo_ros.command.console import Console, Progress, columns, plain, program
 
 
 class Terminal(io.StringIO):
@@ -83,3 +83,19 @@ def test_short_work_shows_no_progress() -> None:
 
 def test_columns_align() -> None:
     assert columns([("a", "1"), ("bcd", "10")], right=[1]) == "a     1\nbcd  10"
+
+
+@pytest.mark.parametrize(
+    ("called", "found", "shown"),
+    [
+        (".venv/bin/pneumo", None, ".venv/bin/pneumo"),
+        (".venv/bin/pneumo", ".venv/bin/pneumo", "pneumo"),
+        ("site/pneumo_ros/__main__.py", None, "python -m pneumo_ros"),
+    ],
+)
+def test_advice_names_the_command_as_it_can_be_typed(
+    called: str, found: str | None, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", [called])
+    monkeypatch.setattr("shutil.which", lambda name: found)
+    assert program() == shown
