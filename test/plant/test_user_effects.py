@@ -11,7 +11,7 @@ from plant.catalogue import in_python
 from plant.user_files import AXIS, HEAD, composed, one, seen
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.plant import Library, load_model
+from pneumo_ros.plant import Library, Stepper, load_model
 
 SEAL_LEAK = '''
 class SealLeak(Effect):
@@ -86,3 +86,66 @@ def test_plain_python_mode_runs_the_same_text() -> None:
 def test_missing_effects_file_is_told() -> None:
     with pytest.raises(UsageError, match=r"nowhere\.py does not exist"):
         Library(["nowhere.py"])
+
+
+CLOCK = """
+class Clock(Effect):
+    \"\"\"Integrates the time, and counts steps: what a memory does that advances once per step.\"\"\"
+
+    way = State("s", "integral of the time")
+    steps = State("1", "steps so far")
+    last = State("s", "time at the end of the last step")
+
+    def equations(t):
+        der_way = t
+        return der_way
+
+    def advance(steps, t):
+        steps = steps + 1.0
+        last = t
+        return steps, last
+"""
+
+
+def test_time_runs_on_and_memory_advances_once_per_step(tmp_path: Path) -> None:
+    model = composed(tmp_path, CLOCK, "clock", base=())
+    x = model.simulate(np.zeros(6), model.state(), sample_time=0.5, step=0.1, start=10.0)[:, 4:]
+    t = 10.0 + 0.5 * np.arange(1, 7)
+    assert x[:, 0] == pytest.approx(0.5 * (t**2 - 100.0), rel=1e-12)  # the midpoint rule is exact here
+    assert x[:, 1].tolist() == [5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
+    assert x[:, 2] == pytest.approx(t, rel=1e-12)
+
+
+def test_time_runs_on_in_parts_in_lanes_and_in_steppers(tmp_path: Path) -> None:
+    model = composed(tmp_path, CLOCK, "clock", base=())
+    whole = model.simulate(np.zeros(6), model.state(), sample_time=0.5, step=0.1, start=10.0)
+    parted = model.simulate(np.zeros(6), model.state(), sample_time=1.0, step=0.1, start=10.0, parts=2)
+    assert parted[:, 4:] == pytest.approx(whole[1::2, 4:], rel=1e-12)
+    states, first = np.tile(model.state(), (2, 1)), [0, 2]
+    lanes = model.simulate_lanes(np.zeros(6), states, first=first, samples=4, sample_time=0.5, step=0.1, start=10.0)
+    assert lanes[0, :, 4:] == pytest.approx(whole[:4, 4:], rel=1e-12)
+    assert lanes[1, -1, 4] == pytest.approx(0.5 * (13.0**2 - 11.0**2), rel=1e-12)
+    stepper = Stepper(model, model.state(), sample_time=0.5, step=0.1)
+    assert [float(stepper.advance(0.0)[6]) for _ in range(3)] == pytest.approx([0.5, 1.0, 1.5], rel=1e-12)
+
+
+FIRST_ORDER = """
+class Lag(Effect):
+    \"\"\"A first-order lag, far faster than the step, whose rate the integrator takes exactly.\"\"\"
+
+    time_constant = Parameter(1e-6, "s", "time constant", low=1e-9, high=1.0)
+    filtered = State("V", "filtered voltage")
+
+    def equations(U, filtered, time_constant):
+        rate_filtered = 1.0 / time_constant
+        der_filtered = (U - filtered) / time_constant
+        return der_filtered, rate_filtered
+"""
+
+
+@pytest.mark.parametrize("time_constant", [1e-9, 1e-6, 3e-4, 1e-2])
+def test_a_state_with_a_rate_is_exact_at_any_speed(tmp_path: Path, time_constant: float) -> None:
+    model = composed(tmp_path, FIRST_ORDER, "lag", base=())
+    fast = in_python(model.with_parameters({"lag.time_constant": time_constant}))
+    x = fast.simulate(np.full(10, 3.0), fast.state())[:, 4]
+    assert x == pytest.approx(3.0 * -np.expm1(-1e-3 * np.arange(1, 11) / time_constant), rel=1e-11)
