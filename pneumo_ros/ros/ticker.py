@@ -14,16 +14,29 @@ class Ticker:
     Late ticks are made up for at once, until 0.1 s is missing; what is older is dropped and counted in `dropped_ns`.
     """
 
-    def __init__(self, period_ns: float, tick: Callable[[int], None], ended: Callable[[Exception], None]) -> None:
-        """`ended` gets the exception if one ends the thread."""
+    def __init__(
+        self,
+        period_ns: float,
+        tick: Callable[[int], None],
+        ended: Callable[[Exception], None],
+        *,
+        now: Callable[[], int] = time.monotonic_ns,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        """`ended` gets the exception if one ends the thread; `now` [ns] and `sleep` [s] are the clock."""
         self.ticks = self.late = self.dropped_ns = 0
         self._period, self._tick, self._ended = period_ns, tick, ended
+        self._now, self._sleep = now, sleep
         self._stop = False
         self._thread = threading.Thread(target=self._run, name="ticker", daemon=True)
 
     def start(self) -> None:
         """The first tick comes one period from now."""
         self._thread.start()
+
+    def stop_soon(self) -> None:
+        """End the thread after the present tick."""
+        self._stop = True
 
     def stop(self) -> None:
         """End the thread and wait for it."""
@@ -38,14 +51,14 @@ class Ticker:
             self._ended(failure)
 
     def _loop(self) -> None:
-        origin, count = time.monotonic_ns(), 0
+        origin, count = self._now(), 0
         while not self._stop:
             count += 1
             deadline = origin + round(count * self._period)
-            behind = time.monotonic_ns() - deadline
+            behind = self._now() - deadline
             if behind < 0:
-                time.sleep(-behind * 1e-9)
-                behind = time.monotonic_ns() - deadline
+                self._sleep(-behind * 1e-9)
+                behind = self._now() - deadline
             self.ticks += 1
             self.late += behind > LATE
             if behind > BACKLOG:

@@ -7,16 +7,16 @@ import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from pneumo_ros.plant import Model, Stepper
+from pneumo_ros.plant import Model
 
 # Numba holds the interpreter for most of its seconds; another process fills the kernel cache, from which loading takes
-# milliseconds.
+# milliseconds. One sample and its outputs need all that a simulation needs of a kernel.
 _PROGRAM = """
 import json, sys
-from pneumo_ros.plant import Library, Stepper, model_from_dict
+from pneumo_ros.plant import Library, model_from_dict
 given = json.load(sys.stdin)
 model = model_from_dict(given["model"], "model", Library(given["files"]))
-Stepper(model, model.state())
+model.outputs(model.simulate([0.0], model.state()))
 """
 
 
@@ -61,7 +61,7 @@ class Compiler:
         # a failure there is met again, and told, when the kernel is loaded here
         subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
         try:
-            Stepper(model, model.state())
+            model.outputs(model.simulate([0.0], model.state()))
         except Exception as failure:  # of numba, about the text of a user's effect: no class to name here
             return failure
         return None

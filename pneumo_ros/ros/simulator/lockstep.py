@@ -7,13 +7,15 @@ from pneumo_ros.ros.node import AxisNode
 
 SETTLE = 0.3  # s after both sides are matched here until they are so at the controller, too
 WATCH = 0.05  # s
+MISSES = 3  # commands in a row that did not come: nobody is there, though the middleware takes long to notice
 
 
 class Lockstep:
     """Runs `send` (publish the present sample) and `advance` (one sample) in turns with the commands.
 
     Everything happens in callbacks of the executor: a command causes the next sample. Without a controller the plant
-    runs on freely. A command that does not come within the timeout is counted, said, and not waited for.
+    runs on freely. A command that does not come within the timeout is counted, said, and not waited for; after three in
+    a row the controller counts as gone until it sends a command.
     """
 
     def __init__(
@@ -22,21 +24,23 @@ class Lockstep:
         advance: Callable[[], bool],
         send: Callable[[], None],
         matched: Callable[[], bool],
+        paused: Callable[[], bool],
         *,
         wait: float,
         timeout: float,
     ) -> None:
-        """`advance` returns whether the plant moved (it does not while paused); times in s of the wall."""
-        self._node, self._advance, self._send, self._matched = node, advance, send, matched
+        """`advance` returns whether the state is still finite; times in s of the wall."""
+        self._node, self._advance, self._send, self._matched, self._paused = node, advance, send, matched, paused
         self._wait, self._timeout = wait, timeout
         self.started = self.closed = self._awaiting = False
-        self.answered = self.timeouts = 0
+        self.answered = self.timeouts = self._missed = 0
         self._since = self._begin = time.monotonic()
         self._met: float | None = None
         node.create_timer(WATCH, self._watch, clock=node.steady_clock)
 
     def command(self) -> None:
         """A command has come, good or refused: it answers the measurement that waits for one."""
+        self._missed = 0
         if self._awaiting:
             self._awaiting = False
             self.answered += 1
@@ -48,7 +52,7 @@ class Lockstep:
             self._soon()
 
     def _go_on(self) -> None:
-        if not self._awaiting and self._advance():
+        if not self._awaiting and not self._paused() and self._advance():
             self.publish()
 
     def _soon(self) -> None:
@@ -67,12 +71,14 @@ class Lockstep:
             self._start_when_met()
             return
         self._follow_match()
-        if self._awaiting and time.monotonic() - self._since > self._timeout:
+        if self._awaiting and not self._paused() and time.monotonic() - self._since > self._timeout:
             self._miss()
 
     def _start_when_met(self) -> None:
         now = time.monotonic()
-        if not self._matched():
+        if self._paused():
+            self._begin = now
+        elif not self._matched():
             self._met = None
             if now - self._begin > self._wait:
                 self._node.get_logger().warning(
@@ -89,7 +95,7 @@ class Lockstep:
         self.publish()
 
     def _follow_match(self) -> None:
-        matched = self._matched()
+        matched = self._missed < MISSES and self._matched()
         if matched == self.closed:
             return
         self.closed = matched
@@ -101,6 +107,7 @@ class Lockstep:
     def _miss(self) -> None:
         self._awaiting = False
         self.timeouts += 1
+        self._missed += 1
         self._node.get_logger().warning(
             f"no command within {self._timeout:g} s (parameter lockstep_timeout), {self.timeouts} so far",
             throttle_duration_sec=5.0,

@@ -40,14 +40,16 @@ class Simulator(AxisNode):
         super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it makes that time itself
         files = tuple(effects_files)
         self.lock = threading.Lock()
-        self.paused = False
+        self.paused = self.parameters["start_paused"]
         self.fault: str | None = None
         self.simulation = self._build(files, tolerated)
         self._simulated_time = self.parameters["publish_clock"] or self.parameters["real_time_factor"] != 1.0
         self.outlet = Outlet(self, self.parameters["joint_name"], self._simulated_time)
         self._stamps = WallStamps()
         self._description = Description(self, self._describe)
-        self._tuning = Tuning(self.parameters, self.simulation, self.lock, self.get_logger(), self._changed, files)
+        self._tuning = Tuning(
+            self.parameters, self.simulation, self.lock, self.get_logger(), self._description.publish, files
+        )
         self._service_calls = Services(self)
         self._commands = self.create_subscription(Float64, COMMAND, self._command, SUBSCRIBE, raw=True)
         factor = self.parameters["real_time_factor"]
@@ -77,9 +79,10 @@ class Simulator(AxisNode):
     def _make_lockstep(self) -> Lockstep:
         return Lockstep(
             self,
-            lambda: not self.paused and self._advance(0, 1.0),
+            lambda: self._advance(0, 1.0),
             self._send,
             lambda: loop_closed(self, self.outlet.joint_states, self._commands),
+            lambda: self.paused,
             wait=self.parameters["lockstep_wait"],
             timeout=self.parameters["lockstep_timeout"],
         )
@@ -151,10 +154,6 @@ class Simulator(AxisNode):
     def health(self) -> Health:
         """Rates, counts and warnings; see `Monitor`."""
         return self._monitor.look(self.paused, self.fault, self._tuning.compiler.busy)
-
-    def _changed(self) -> None:
-        self.outlet.velocity = self.parameters["publish_velocity"]
-        self._description.publish()
 
     def _describe(self) -> dict[str, object]:
         return describe(self.simulation.model.as_dict(), self.parameters["seed"])

@@ -1,7 +1,5 @@
 """Sends a sample: both pressures, then the joint state, so that whoever waits for the latter has all; then /clock."""
 
-from collections.abc import Callable
-
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
@@ -24,7 +22,6 @@ class Outlet:
         self._time = messages.clock()
         self._a, self._b = messages.pressure("chamber_a"), messages.pressure("chamber_b")
         self._joint, self._joint_without_velocity = messages.joint_state(joint), messages.joint_state(joint, False)
-        self.velocity = True
 
     def send(self, simulation: Simulation, stamp: int) -> None:
         """Send the present reading with `stamp` [ns]."""
@@ -33,11 +30,8 @@ class Outlet:
             self._clock.publish(self._time.fill(stamp))
         self._pressure_a.publish(self._a.fill(stamp, reading.pressure_a, variance))
         self._pressure_b.publish(self._b.fill(stamp, reading.pressure_b, variance))
-        self.joint_states.publish(self._fill(stamp, reading.position, reading.velocity, simulation.effort))
-
-    @property
-    def _fill(self) -> Callable[..., bytes]:
-        return self._joint.fill if self.velocity else self._without
-
-    def _without(self, stamp: int, position: float, velocity: float, effort: float) -> bytes:
-        return self._joint_without_velocity.fill(stamp, position, effort)
+        if reading.velocity is None:
+            message = self._joint_without_velocity.fill(stamp, reading.position, simulation.effort)
+        else:
+            message = self._joint.fill(stamp, reading.position, reading.velocity, simulation.effort)
+        self.joint_states.publish(message)

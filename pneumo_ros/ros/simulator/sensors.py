@@ -9,10 +9,10 @@ _BLOCK = 4096  # draws at a time: one draw per sample would cost more than the k
 
 
 class Reading(NamedTuple):
-    """One sample of all sensors: m, m/s, Pa abs."""
+    """One sample of all sensors: m, m/s (None: not measured), Pa abs."""
 
     position: float
-    velocity: float
+    velocity: float | None
     pressure_a: float
     pressure_b: float
 
@@ -28,6 +28,7 @@ class Sensors:
     noise_pressure: float = 0.0
     quantisation_position: float = 0.0
     quantisation_pressure: float = 0.0
+    publish_velocity: bool = True
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -39,13 +40,13 @@ class Sensors:
         self._draws: list[list[float]] = []
 
     def read(self, true: Reading) -> Reading:
-        """The reading of a true state; the velocity is passed on as it is."""
+        """The reading of a true state; the velocity is passed on as it is, if at all."""
         if not self._draws:
             self._draws = self._random.standard_normal((_BLOCK, 3)).tolist()
         e_y, e_a, e_b = self._draws.pop()
         return Reading(
             _rounded(true.position + self.noise_position * e_y, self.quantisation_position),
-            true.velocity,
+            true.velocity if self.publish_velocity else None,
             _rounded(true.pressure_a + self.noise_pressure * e_a, self.quantisation_pressure),
             _rounded(true.pressure_b + self.noise_pressure * e_b, self.quantisation_pressure),
         )

@@ -15,6 +15,7 @@ FIXED = (
     Setting("step", STEP, "integration step", "s", 1e-6, 1e-3, live=False),
     Setting("seed", 0, "of the sensor noise", "", 0, 2**31 - 1, live=False),
     PRIORITY,
+    Setting("start_paused", False, "wait for ~/pause with data: false, so that recorders miss nothing", live=False),
     Setting("publish_clock", False, "send simulated time on /clock and stamp messages with it", live=False),
     Setting(
         "real_time_factor", 1.0,

@@ -15,7 +15,9 @@ from pneumo_ros.ros.simulator.machine import changed
 from pneumo_ros.ros.simulator.settings import EFFECTS, machine_settings
 from pneumo_ros.ros.simulator.simulation import Simulation
 
-_SENSORS = ("noise_position", "noise_pressure", "quantisation_position", "quantisation_pressure")
+_SENSORS = (
+    "noise_position", "noise_pressure", "quantisation_position", "quantisation_pressure", "publish_velocity",
+)  # fmt: skip
 
 
 class Tuning:

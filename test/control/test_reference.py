@@ -1,0 +1,39 @@
+"""Shapes of references."""
+
+import math
+
+import pytest
+
+from pneumo_ros.control.reference import constant, sine, steps
+from pneumo_ros.errors import UsageError
+
+
+def test_shapes() -> None:
+    assert constant(0.2)(17.0) == 0.2
+    held = steps([0.0, 0.06, -0.1], 2.0)
+    assert [held(t) for t in (0.0, 1.999, 2.0, 4.5, 6.0)] == [0.0, 0.0, 0.06, -0.1, 0.0]
+    wave = sine(0.3, 0.05, 0.1)
+    assert wave(0.0) == 0.1
+    assert wave(5.0) == pytest.approx(0.4)
+    assert wave(15.0) == pytest.approx(-0.2)
+
+
+def test_every_boundary_of_steps_belongs_to_the_next_level() -> None:
+    """At k hold, rounding of the quotient notwithstanding."""
+    held = steps([0.0, 1.0], 0.1)
+    assert [held(0.1 * k) for k in range(100)] == [float(k % 2) for k in range(100)]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: constant(math.nan),
+        lambda: steps([], 1.0),
+        lambda: steps([0.0, math.inf], 1.0),
+        lambda: steps([0.0], 0.0),
+        lambda: sine(math.nan, 1.0),
+    ],
+)
+def test_what_is_no_reference_is_refused(make: object) -> None:
+    with pytest.raises(UsageError, match="it takes"):
+        make()  # type: ignore[operator]  # one of the functions above

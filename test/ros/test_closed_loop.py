@@ -1,0 +1,51 @@
+"""Simulator and controller as processes: the piston goes where it should, and stops when the controller dies."""
+
+import signal
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+from ros.probe import Probe, probe
+from ros.processes import node, running
+
+
+def settled(one: Probe, wanted: float) -> bool:
+    """Whether the last half second was within 2 mm of the reference."""
+    last = [message.position[0] for message in one.heard["joint_states"][-250:]]
+    return len(last) == 250 and max(abs(y - wanted) for y in last) < 2e-3
+
+
+def test_two_cylinders_at_once_each_go_where_they_should(tmp_path: Path) -> None:
+    wanted = {"left": 0.08, "right": -0.05}
+    with ExitStack() as stack:
+        processes, probes = [], {}
+        for name, position in wanted.items():
+            place = ("-r", f"__ns:=/{name}")
+            steady = {"reference.shape": "constant", "reference.position": position}
+            sensors = {"noise_position": 5e-6, "quantisation_position": 1e-5, "publish_velocity": False}
+            for command in (
+                node("simulator", *place, joint_name=f"{name}_piston", **sensors),
+                node("controller", *place, joint_name=f"{name}_piston", **steady),
+            ):
+                processes.append(stack.enter_context(running(*command, cwd=tmp_path)))
+            probes[name] = stack.enter_context(probe(name))
+        for name, one in probes.items():
+            one.wait(lambda: settled(one, wanted[name]), f"rest at {wanted[name]} m", 20.0)  # noqa: B023  # used at once
+            message = one.heard["joint_states"][-1]
+            assert list(message.name) == [f"{name}_piston"]
+            assert len(message.velocity) == 0
+        assert [process.end(signal.SIGINT) for process in reversed(processes)] == [0, 0, 0, 0]
+
+
+def test_the_valve_closes_when_the_controller_is_killed(tmp_path: Path) -> None:
+    far = {"reference.shape": "constant", "reference.position": 0.9}
+    plant, control = node("simulator", "-r", "__ns:=/killed"), node("controller", "-r", "__ns:=/killed", **far)
+    with running(*plant, cwd=tmp_path) as simulator, running(*control, cwd=tmp_path) as controller:  # noqa: SIM117
+        with probe("killed") as one:
+            one.wait(lambda: one.heard["joint_states"] and one.heard["joint_states"][-1].velocity[0] > 0.1, "motion")
+            controller.process.kill()
+            one.wait(lambda: one.health("killed/simulator")[1]["voltage_V"] == "0", "a closed valve", 3.0)
+            one.wait(lambda: abs(one.heard["joint_states"][-1].velocity[0]) < 1e-3, "rest")
+            speeds = np.array([message.velocity[0] for message in one.heard["joint_states"]])
+            assert np.argmax(np.abs(speeds)) < len(speeds) - 50  # it slowed down from there
+            assert simulator.end() == 0

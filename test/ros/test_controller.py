@@ -1,0 +1,171 @@
+"""The controller as a process, with the test as its plant."""
+
+import math
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from ros.probe import BEST_EFFORT, Probe, probe
+from ros.processes import Running, node, running
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+from pneumo_ros.control import Measurement, Pid
+
+NAME = "piston"
+
+
+class Plant:
+    """Sends joint states and gathers the commands."""
+
+    def __init__(self, one: Probe) -> None:
+        self.probe = one
+        self.publisher = one.node.create_publisher(JointState, "joint_states", BEST_EFFORT)
+        self.commands = one.heard["valve/command"]
+        one.matched(self.publisher, one.reference)
+        one.wait(lambda: one.node.count_publishers("valve/command"), "a controller")
+        time.sleep(0.3)  # until both sides know
+        self.time = 1_000_000_000
+
+    def send(self, position: float, velocity: float | None = None, step: int = 2_000_000) -> None:
+        """A joint state, one `step` [ns] after the last one."""
+        self.time += step
+        message = JointState(name=["boom", NAME], position=[9.0, position])
+        message.velocity = [9.0, velocity] if velocity is not None else []
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(self.time, 1_000_000_000)
+        self.publisher.publish(message)
+
+    def answer(self, position: float, velocity: float | None = None) -> float:
+        """The command that a joint state causes."""
+        have = len(self.commands)
+        self.send(position, velocity)
+        self.probe.wait(lambda: len(self.commands) > have, "a command")
+        return self.commands[-1].data
+
+    def want(self, position: float) -> None:
+        """Send a reference."""
+        self.probe.reference.publish(Float64(data=position))
+        time.sleep(0.1)
+
+
+@contextmanager
+def controlled(folder: Path, namespace: str, **parameters: object) -> Iterator[tuple[Running, Plant]]:
+    """A controller and its plant."""
+    given = {"measurement_timeout": 10.0, **parameters}
+    command = node("controller", "-r", f"__ns:=/{namespace}", **given)
+    with running(*command, cwd=folder) as process, probe(namespace) as one:
+        yield process, Plant(one)
+
+
+def test_every_measurement_gets_the_command_of_the_law(tmp_path: Path) -> None:
+    """To the bit: the node adds nothing, and joint and velocity are found by name."""
+    with controlled(tmp_path, "law") as (process, plant):
+        assert plant.answer(0.0) == 0.0  # no reference yet
+        plant.want(0.05)
+        law, begin = Pid(), plant.time
+        law.reset()
+        positions = [0.0, 1e-5, 3e-5, 1e-4, 2e-4, 4e-4]
+        answers = [plant.answer(y) for y in positions[:3]] + [plant.answer(y, 0.02) for y in positions[3:]]
+        times = [begin + 2_000_000 * (k + 1) for k in range(len(positions))]
+        speeds = [None] * 3 + [0.02] * 3
+        first = 1_002_000_000
+        expected = [
+            law.step(0.05, Measurement((t - first) * 1e-9, y, v))
+            for t, y, v in zip(times, positions, speeds, strict=True)
+        ]
+        assert answers == expected
+        assert len(plant.commands) == 1 + len(positions)
+        assert process.end() == 0
+
+
+def test_silence_is_answered_with_0_v_and_said(tmp_path: Path) -> None:
+    with controlled(tmp_path, "silence", measurement_timeout=0.2) as (process, plant):
+        plant.want(0.3)
+        assert plant.answer(0.0) > 0.5
+        process.wait_for("no measurement for 0.2 s: sending 0 V")
+        plant.probe.wait(lambda: plant.commands[-1].data == 0.0, "0 V")
+        message, _ = plant.probe.health("silence/controller")
+        assert "measurements stay away" in message
+        assert plant.answer(0.0) > 0.5
+        process.wait_for("measurements are back")
+        assert process.said.count("sending 0 V") == 1
+        assert process.end() == 0
+
+
+def test_what_is_no_number_is_refused_and_counted(tmp_path: Path) -> None:
+    with controlled(tmp_path, "numbers") as (process, plant):
+        plant.want(0.3)
+        before = plant.answer(0.0)
+        have = len(plant.commands)
+        plant.send(math.nan)
+        plant.send(math.inf)
+        plant.want(math.nan)
+        time.sleep(0.2)
+        assert len(plant.commands) == have  # no answer to a position that is none
+        assert plant.answer(0.0) == pytest.approx(before, abs=0.1)  # and the reference is the old one
+        _, values = plant.probe.health("numbers/controller")
+        assert values["rejected_inputs"] == "3"
+        assert process.end() == 0
+
+
+def test_gains_change_under_way_or_not_at_all(tmp_path: Path) -> None:
+    with controlled(tmp_path, "gains") as (process, plant):
+        plant.want(0.05)
+        usual = plant.answer(0.0)
+        refused, reason = plant.probe.set("controller", pid__proportional=-1.0)
+        assert not refused
+        assert "pid.proportional" in reason
+        assert not plant.probe.set("controller", max_voltage=0.5)[0]  # inside the dead zone
+        assert not plant.probe.set("controller", reference__shape="circle")[0]
+        assert plant.probe.get("controller", "pid.proportional") == 100.0
+        assert plant.probe.set("controller", pid__proportional=20.0) == (True, "")
+        assert 0.78 < plant.answer(0.0) < usual - 2.0
+        assert plant.probe.set("controller", reference__shape="constant", reference__position=-0.05) == (True, "")
+        assert plant.answer(0.0) < -0.78
+        assert process.end() == 0
+
+
+def test_a_clock_that_was_set_back_starts_it_anew(tmp_path: Path) -> None:
+    with controlled(tmp_path, "loops") as (process, plant):
+        plant.want(0.05)
+        plant.time = 100_000_000_000
+        plant.answer(0.0)
+        plant.time = 5_000_000_000
+        assert plant.answer(0.0) > 0.78
+        assert plant.answer(0.0) > 0.78
+        assert process.end() == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_its_last_command_is_0_v(tmp_path: Path, number: int) -> None:
+    with controlled(tmp_path, "last") as (process, plant):
+        plant.want(0.3)
+        assert plant.answer(0.0) > 0.5
+        assert process.end(number) == 0
+        plant.probe.wait(lambda: plant.commands[-1].data == 0.0, "0 V")
+
+
+def test_a_missing_joint_is_named(tmp_path: Path) -> None:
+    with controlled(tmp_path, "joints", joint_name="arm") as (process, plant):
+        plant.send(0.0)
+        process.wait_for("joint_states has no position of joint 'arm' (parameter joint_name), but of: boom, piston")
+        assert not plant.commands
+        assert process.end() == 0
+
+
+def test_it_takes_its_dead_zone_from_a_machine_file_and_refuses_what_it_does_not_know(tmp_path: Path) -> None:
+    from importlib.resources import files
+
+    config = files("pneumo_ros.config")
+    machine = tmp_path / "machine.yaml"
+    machine.write_text((config / "axis.yaml").read_text().replace("right_limit: 0.78", "right_limit: 0.9"))
+    files_given = ("--params-file", str(config / "control" / "pid.yaml"), "--params-file", str(machine))
+    with running(*node("controller", *files_given), cwd=tmp_path) as process, probe() as one:
+        assert one.get("controller", "dead_zone.right_limit") == 0.9
+        assert process.end() == 0
+    with running(*node("controller", **{"pid.proportionl": 3.0}), cwd=tmp_path) as process:
+        assert process.end(None) == 2
+        assert "did you mean pid.proportional?" in process.said

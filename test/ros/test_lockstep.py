@@ -1,0 +1,104 @@
+"""Lockstep with the controller: faster than time, the same to the last bit, and free without a controller."""
+
+import signal
+from pathlib import Path
+
+from ros.probe import Probe, probe, stamp
+from ros.processes import node, running
+
+LOCKSTEP = {
+    "real_time_factor": 0.0,
+    "start_paused": True,
+    "publish_rate": 500.0,
+    "noise_position": 1e-5,
+    "quantisation_pressure": 10.0,
+}
+SINE = {"reference.shape": "sine", "reference.amplitude": 0.2, "reference.frequency": 0.2}
+SPAN = 6.0  # s of simulated time
+
+Samples = dict[int, tuple[float, float, float]]
+
+
+def heard(one: Probe) -> Samples:
+    """Joint states of the first SPAN seconds, by stamp, of a simulator that waits to be started."""
+    messages = one.heard["joint_states"]
+    one.wait(lambda: one.node.count_publishers("joint_states"), "a simulator")
+    assert one.pause(False).success
+    one.wait(lambda: messages and stamp(messages[-1]) > SPAN * 1e9, f"{SPAN} s of simulated time", 40.0)
+    return {stamp(m): (m.position[0], m.velocity[0], m.effort[0]) for m in list(messages) if stamp(m) <= SPAN * 1e9}
+
+
+def together(tmp_path: Path, namespace: str, **more: object) -> Samples:
+    """One run of both nodes in one process."""
+    command = node("axis", "-r", f"__ns:=/{namespace}", **LOCKSTEP, **SINE, **more)
+    with probe(namespace) as one, running(*command, cwd=tmp_path) as process:
+        samples = heard(one)
+        assert process.end(signal.SIGTERM) == 0, process.said
+    return samples
+
+
+def apart(tmp_path: Path, namespace: str) -> Samples:
+    """One run of two processes."""
+    place = ("-r", f"__ns:=/{namespace}")
+    plant, control = node("simulator", *place, **LOCKSTEP), node("controller", *place, use_sim_time=True, **SINE)
+    with (
+        probe(namespace) as one,
+        running(*plant, cwd=tmp_path) as simulator,
+        running(*control, cwd=tmp_path) as controller,
+    ):
+        samples = heard(one)
+        assert controller.end(signal.SIGINT) == 0, controller.said
+        assert simulator.end(signal.SIGINT) == 0, simulator.said
+    return samples
+
+
+def assert_same_run(one: Samples, other: Samples) -> None:
+    """Wherever both were heard they are equal, and that is nearly everywhere."""
+    common = sorted(one.keys() & other.keys())
+    assert len(common) > 0.5 * SPAN * LOCKSTEP["publish_rate"]  # a fast publisher outruns its listener at times
+    assert [one[s] for s in common] == [other[s] for s in common]
+    assert max(abs(one[s][0]) for s in common) > 0.1
+
+
+def test_runs_repeat_bit_for_bit_in_one_process_and_in_two(tmp_path: Path) -> None:
+    first = together(tmp_path, "first")
+    assert_same_run(first, together(tmp_path, "second"))
+    assert_same_run(first, apart(tmp_path, "third"))
+
+
+def test_another_seed_gives_another_run(tmp_path: Path) -> None:
+    first, other = together(tmp_path, "seed_0"), together(tmp_path, "seed_1", seed=1)
+    differing = [s for s in first.keys() & other.keys() if first[s] != other[s]]
+    assert len(differing) > 0.5 * SPAN * LOCKSTEP["publish_rate"]
+
+
+def test_without_a_controller_it_says_so_and_runs_open_loop(tmp_path: Path) -> None:
+    command = node("simulator", "-r", "__ns:=/alone", **{**LOCKSTEP, "start_paused": False}, lockstep_wait=0.5)
+    with running(*command, cwd=tmp_path) as process, probe("alone") as one:
+        process.wait_for("no controller within 0.5 s")
+        process.wait_for("open loop")
+        begin = stamp(one.more("joint_states")[-1])
+        one.wait(lambda: stamp(one.heard["joint_states"][-1]) > begin + 5e9, "5 s of simulated time", 5.0)
+        assert one.pause(True).success
+        one.trigger("simulator/step")
+        assert one.trigger("simulator/reset").success
+        assert one.pause(False).success
+        assert process.end() == 0
+
+
+def test_a_controller_that_dies_is_not_waited_for(tmp_path: Path) -> None:
+    place = ("-r", "__ns:=/orphan")
+    plant = node("simulator", *place, real_time_factor=0.0, lockstep_timeout=0.3)
+    control = node("controller", *place, use_sim_time=True, **SINE)
+    with (
+        running(*plant, cwd=tmp_path) as process,
+        running(*control, cwd=tmp_path) as controller,
+        probe("orphan") as one,
+    ):
+        one.wait(lambda: one.heard["valve/command"], "a command", 30.0)
+        controller.process.kill()
+        process.wait_for("no command within 0.3 s")
+        process.wait_for("controller left; the plant runs open loop")
+        one.wait(lambda: one.health("orphan/simulator")[1]["voltage_V"] == "0", "a closed valve")
+        assert int(one.health("orphan/simulator")[1]["command_timeouts"]) >= 3
+        assert process.end() == 0

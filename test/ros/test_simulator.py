@@ -1,0 +1,264 @@
+"""The simulator as a process: what it sends, takes, refuses and changes while it runs."""
+
+import json
+import math
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ros.probe import BEST_EFFORT, Probe, probe, stamp
+from ros.processes import Running, node, running
+
+from pneumo_ros.plant import load_model, model_from_dict
+
+AXIS = load_model("axis")
+
+
+@pytest.fixture(scope="module")
+def simulator(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """One simulator for the tests that leave it as it was."""
+    with running(*node("simulator", publish_rate=500.0), cwd=tmp_path_factory.mktemp("simulator")) as process:
+        yield process
+        assert process.end(signal.SIGINT) == 0, process.said
+
+
+@pytest.fixture(scope="module")
+def one_probe(simulator: Running) -> Iterator[Probe]:
+    with probe() as one:
+        one.matched(one.command)
+        one.more("joint_states")
+        yield one
+
+
+@pytest.fixture
+def axis(one_probe: Probe) -> Probe:
+    """The simulator, reset, seen by a probe."""
+    assert one_probe.trigger("simulator/reset").success
+    return one_probe
+
+
+def positions(messages: list) -> np.ndarray:
+    return np.array([message.position[0] for message in messages])
+
+
+def test_a_joint_state_is_complete_and_the_pressures_share_its_stamp(axis: Probe) -> None:
+    axis.send(2.0, 0.3)
+    for name in ("joint_states", "chamber_a/pressure", "chamber_b/pressure"):
+        axis.heard[name].clear()
+    message = axis.more("joint_states", 20)[10]
+    assert list(message.name) == ["piston"]
+    pressures = [
+        next(p.fluid_pressure for p in axis.heard[f"chamber_{c}/pressure"] if stamp(p) == stamp(message)) for c in "ab"
+    ]
+    areas = AXIS["piston.area_a"], AXIS["piston.area_b"]
+    effort = areas[0] * pressures[0] - areas[1] * pressures[1] - 1e5 * (areas[0] - areas[1])
+    assert message.effort[0] == pytest.approx(effort, rel=1e-12)
+    assert len(message.position) == len(message.velocity) == 1
+
+
+def test_stamps_are_as_even_as_the_rate_and_tell_the_time(axis: Probe) -> None:
+    messages = axis.more("joint_states", 200)
+    steps = np.diff([stamp(message) for message in messages])
+    assert np.abs(steps - 2_000_000).max() < 1000
+    assert abs(stamp(messages[-1]) * 1e-9 - time.time()) < 0.5
+
+
+def test_it_moves_as_the_model_says(axis: Probe) -> None:
+    expected = AXIS.simulate(np.full(1000, 2.0), AXIS.state(), sample_time=0.002)[-1]
+    axis.send(2.0, 2.0)
+    last = axis.heard["joint_states"][-1]
+    assert last.velocity[0] == pytest.approx(expected[1], rel=0.01)
+    assert last.position[0] == pytest.approx(expected[0], abs=0.02)  # 0.1 s of motion
+
+
+def test_the_valve_closes_when_commands_stop(axis: Probe) -> None:
+    before = int(axis.health("simulator")[1]["valve_closures"])
+    axis.send(2.0, 0.5)
+    assert axis.heard["joint_states"][-1].velocity[0] > 0.05
+    time.sleep(0.15)  # command_timeout is 0.1 s
+    pressures = [axis.more("chamber_a/pressure")[0].fluid_pressure]
+    axis.wait(lambda: abs(axis.heard["joint_states"][-1].velocity[0]) < 1e-3, "rest")
+    pressures.append(axis.more("chamber_a/pressure")[0].fluid_pressure)
+    _, values = axis.health("simulator")
+    assert float(values["voltage_V"]) == 0.0
+    assert int(values["valve_closures"]) == before + 1
+    assert max(pressures) < 6.9e5  # an open valve would have filled it to the supply's 7 bar
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_command_that_is_no_number_is_refused_and_counted(axis: Probe, bad: float) -> None:
+    before = int(axis.health("simulator")[1]["rejected_inputs"])
+    axis.send(bad, 0.2)
+    message, values = axis.health("simulator")
+    assert int(values["rejected_inputs"]) > before
+    assert "refused" in message
+    assert axis.more("joint_states")[0].velocity[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_command_out_of_range_is_clipped_and_counted(axis: Probe) -> None:
+    before = int(axis.health("simulator")[1]["saturated_inputs"])
+    axis.send(50.0, 1.2)
+    _, values = axis.health("simulator")
+    assert int(values["saturated_inputs"]) > before
+    assert float(values["voltage_V"]) in (10.0, 0.0)
+    assert axis.heard["joint_states"][-1].position[0] > 0.05
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"piston__mass": -1.0}, "piston.mass"),
+        ({"piston__mass": math.nan}, "piston.mass"),
+        ({"noise_position": 1.0}, "noise_position"),
+        ({"publish_rate": 100.0}, "read-only"),
+        ({"effects": ["dead_zone", "arctan_flow", "lugre_frction"]}, "lugre_friction"),
+        ({"initial__y": 5.0}, "stroke"),
+        ({"piston__mass": 7.0, "air__temperature": -3.0}, "air.temperature"),
+    ],
+)  # fmt: skip
+def test_a_bad_value_is_refused_with_the_reason_and_the_old_one_stays(axis: Probe, change: dict, said: str) -> None:
+    names = [name.replace("__", ".") for name in change]
+    before = [axis.get("simulator", name) for name in names]
+    done, reason = axis.set("simulator", **change)
+    assert not done
+    assert said in reason
+    assert [axis.get("simulator", name) for name in names] == before
+
+
+def test_a_whole_number_serves_as_a_real_one(axis: Probe) -> None:
+    assert axis.set("simulator", piston__mass=6) == (True, "")
+    assert axis.get("simulator", "piston.mass") == 6.0
+    assert axis.set("simulator", piston__mass=5.0) == (True, "")
+
+
+def test_parameters_have_units_finite_ranges_and_no_steps(axis: Probe) -> None:
+    described = axis.describe("simulator", "air.supply_pressure")
+    assert "[Pa]" in described.description
+    span = described.floating_point_range[0]
+    assert math.isfinite(span.from_value)
+    assert math.isfinite(span.to_value)
+    assert span.step == 0.0
+    assert axis.describe("simulator", "publish_rate").read_only
+
+
+def test_physics_changes_under_way_without_a_jump_of_the_state(axis: Probe) -> None:
+    axis.send(2.0, 0.5)
+    for values in ({"piston__mass": 15.0}, {"air__supply_pressure": 5e5}, {"lugre_friction__coulomb_friction": 90.0}):
+        for topic in ("joint_states", "chamber_a/pressure"):
+            axis.heard[topic].clear()
+        axis.send(2.0, 0.05)
+        assert axis.set("simulator", **values) == (True, "")
+        axis.send(2.0, 0.1)
+        assert np.abs(np.diff(positions(axis.heard["joint_states"]))).max() < 0.002 * 0.5  # 0.5 m/s over a sample
+        pressure = np.array([message.fluid_pressure for message in axis.heard["chamber_a/pressure"]])
+        assert np.abs(np.diff(pressure)).max() < 1e4
+    restored = {"piston__mass": 5.0, "air__supply_pressure": 7e5, "lugre_friction__coulomb_friction": 70.0}
+    assert axis.set("simulator", **restored) == (True, "")
+
+
+def test_effects_are_switched_under_way(axis: Probe) -> None:
+    without = [name for name in AXIS.effects if name != "quadratic_drag"]
+    axis.send(2.0, 0.3)
+    axis.heard["joint_states"].clear()
+    axis.heard["description"].clear()
+    assert axis.set("simulator", effects=without) == (True, "")
+
+    def switched() -> bool:
+        axis.send(2.0, 0.02)
+        messages = [json.loads(message.data) for message in axis.heard["description"]]
+        return any(message["model"]["effects"] == without for message in messages)
+
+    axis.wait(switched, "a description without quadratic_drag", 30.0)
+    axis.send(2.0, 0.2)
+    assert max(message.velocity[0] for message in axis.heard["joint_states"]) > 0.5  # the drag had set the top speed
+    assert np.abs(np.diff(positions(axis.heard["joint_states"]))).max() < 0.002 * 5.0
+    assert "quadratic_drag.coefficient" not in axis.names("simulator")
+    assert axis.set("simulator", effects=list(AXIS.effects)) == (True, "")
+    axis.wait(lambda: "quadratic_drag" in axis.heard["description"][-1].data, "the old effects", 30.0)
+    assert axis.get("simulator", "quadratic_drag.coefficient") == AXIS["quadratic_drag.coefficient"]
+
+
+def test_pause_holds_step_goes_one_sample_and_reset_starts_again(axis: Probe) -> None:
+    axis.send(2.0, 0.3)
+    assert axis.pause(True).success
+    time.sleep(0.1)
+    axis.heard["joint_states"].clear()
+    axis.send(2.0)
+    assert axis.trigger("simulator/step").success
+    assert axis.trigger("simulator/step").success
+    time.sleep(0.1)
+    stepped = axis.heard["joint_states"]
+    assert len(stepped) == 2
+    moved = stepped[1].position[0] - stepped[0].position[0]
+    assert moved == pytest.approx(0.002 * stepped[0].velocity[0], rel=0.1)
+    assert axis.pause(False).success
+    assert not axis.trigger("simulator/step").success  # it runs
+    assert axis.trigger("simulator/reset").success
+    assert axis.more("joint_states", 3)[-1].position[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_late_best_effort_subscriber_learns_what_machine_it_sees(axis: Probe) -> None:
+    with probe(qos=BEST_EFFORT) as late:
+        assert late.more("joint_states")
+        late.wait(lambda: late.heard["description"], "a description")
+        said = json.loads(late.heard["description"][0].data)
+    assert said["schema_version"] == 1
+    assert said["seed"] == 0
+    model = model_from_dict(said["model"], "described", AXIS.library)
+    assert dict(model.parameters) == dict(AXIS.parameters)
+
+
+def test_diagnostics_say_how_well_it_keeps_time(axis: Probe) -> None:
+    _, values = axis.health("simulator")
+    assert {"real_time_factor", "late_ticks", "command_age_s", "rejected_inputs", "saturated_inputs"} <= set(values)
+    assert float(values["real_time_factor"]) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_it_with_0(tmp_path: Path, number: int) -> None:
+    with running(*node("simulator", "-r", "__ns:=/ending"), cwd=tmp_path) as process, probe("ending") as one:
+        one.more("joint_states")
+        assert process.end(number) == 0
+        assert "Traceback" not in process.said
+
+
+@pytest.mark.parametrize(
+    ("parameters", "code", "said"),
+    [
+        ({"publsh_rate": 100.0}, 2, "did you mean publish_rate?"),
+        ({"effects": ["dead_zne"]}, 2, "did you mean dead_zone?"),
+        ({"piston.mas": 3.0}, 2, "did you mean piston.mass"),
+        ({"air.temperature": -1.0}, 2, "air.temperature"),
+        ({"model": "emps"}, 2, "emps has no chambers"),
+        ({"model": "axle"}, 3, "give a YAML file or one of: axis"),
+    ],
+)  # fmt: skip
+def test_it_refuses_to_start_with_what_it_does_not_understand(
+    tmp_path: Path, parameters: dict, code: int, said: str
+) -> None:
+    with running(*node("simulator", **parameters), cwd=tmp_path) as process:
+        assert process.end(None) == code
+        assert said in process.said
+        assert len(process.lines) == 1, process.said
+
+
+def test_a_machine_file_is_a_parameter_file_and_nothing_may_be_missing_in_it(tmp_path: Path) -> None:
+    from importlib.resources import files
+
+    text = (files("pneumo_ros.config") / "paper.yaml").read_text()
+    whole, broken = tmp_path / "whole.yaml", tmp_path / "broken.yaml"
+    whole.write_text(text)
+    broken.write_text("\n".join(line for line in text.splitlines() if "stroke:" not in line))
+    with running(*node("simulator", "--params-file", str(broken)), cwd=tmp_path) as process:
+        assert process.end(None) == 2
+        assert "piston.stroke is missing" in process.said
+    command = node("simulator", "--params-file", str(whole), "-r", "__ns:=/whole", **{"piston.mass": 7})
+    with running(*command, cwd=tmp_path) as process, probe("whole") as one:
+        one.wait(lambda: one.heard["description"], "a description")
+        machine = json.loads(one.heard["description"][-1].data)["model"]
+        assert process.end() == 0
+    assert "rod_atmospheric_force" not in machine["effects"]
+    assert machine["piston"]["mass"] == 7.0
