@@ -21,7 +21,8 @@ ROS_WHEELS = [
     "ros-rosgraph-msgs",
 ]
 REPORT = ["plotly>=5"]  # the pages that --report writes
-TEST = ["pytest>=7.4"]
+FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
+TEST = ["pytest>=7.4", "playwright"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
 
@@ -62,7 +63,13 @@ setup(
     zip_safe=False,
     python_requires=">=3.10",
     install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap", "apsw", "lz4", "zstandard"],
-    extras_require={"ros": ROS_WHEELS, "report": REPORT, "test": TEST, "dev": REPORT + TEST + DEV},
+    extras_require={
+        "ros": ROS_WHEELS,
+        "report": REPORT,
+        "figures": FIGURES,
+        "test": TEST,
+        "dev": REPORT + FIGURES + TEST + DEV,
+    },
     entry_points={
         "console_scripts": [
             "pneumo = pneumo_ros.command.main:main",

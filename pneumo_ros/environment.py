@@ -33,9 +33,10 @@ LIBRARIES = {
     "apsw": ("apsw", None),  # these three come with rosbags and mcap
     "lz4": ("lz4", None),
     "zstandard": ("zstandard", None),
-    "plotly": ("plotly", "python3-plotly"),  # for reports only
+    "plotly": ("plotly", "python3-plotly"),  # for reports only, and so is the next
+    "matplotlib": ("matplotlib", "python3-matplotlib"),
 }
-NEEDED = tuple(name for name in LIBRARIES if name != "plotly")
+NEEDED = tuple(name for name in LIBRARIES if name not in ("plotly", "matplotlib"))
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 
 

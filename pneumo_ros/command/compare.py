@@ -1,70 +1,85 @@
 """Compare a model with recordings: error per run and signal against the sensor noise, and the equations that fail.
 
 Each run is predicted in windows of --horizon seconds, every window from a start state estimated around its first
-sample, and once more from its first sample alone (free run).
+sample, and once more from its first sample alone (free run). The equations are judged along the measured signals; where
+one fails, the regimes, the variables and the intervals that hold most of the error are named.
 """
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, chosen_model
-from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.console import Console, columns, plain
+from pneumo_ros.command.refitting import add_refit, refit_text, refitted
+from pneumo_ros.command.reporting import add_report, prepare_report
+from pneumo_ros.diagnose.findings import findings, verdict
+from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, TARGETS
 from pneumo_ros.errors import UsageError
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison, RunComparison
     from pneumo_ros.identify.run import Run
+    from pneumo_ros.plant import Model
 
-# report name -> words, unit shown, factor from SI
-SHOWN = {
-    "position_m": ("position", "mm", 1e3),
-    "pressure_a_pa": ("pressure a", "kPa", 1e-3),
-    "pressure_b_pa": ("pressure b", "kPa", 1e-3),
-}
-EQUATIONS = {"momentum": "momentum", "chamber_a": "chamber a", "chamber_b": "chamber b"}
+SHOWN_RUNS = 8  # more runs than these get one line each
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """BAG..., --horizon, --namespace and the common options."""
+    """BAG..., --horizon, --namespace, the refit, the report and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files")
     parser.add_argument("--horizon", type=float, default=1.0, metavar="S", help="length of the windows (default: 1 s)")
     parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
+    add_refit(parser)
     add_model(parser)
+    add_report(parser)
     add_output(parser)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Read, compare, print."""
+    """Read, refit if asked, compare, print, write."""
     from pneumo_ros.diagnose.compare import compare
 
     if not options.horizon > 0.0:
         raise UsageError(f"--horizon {options.horizon:g} is no length of time; give seconds, such as --horizon 1")
+    report = prepare_report(options)
     model = chosen_model(options)
-    runs = read_runs(options, console, model.force_driven)
+    runs = read_runs(options.bags, options.namespace, console, model.force_driven)
+    model, refit = refitted(options, console, model, runs, read_runs)
     with console.progress("Comparing") as progress:
         comparison = compare(model, runs, options.horizon, lambda share, _: progress(share))
-    for caution in model.cautions():
-        console.note(f"Note: {caution}")
-    for result in comparison.runs:
-        console.say(run_text(result, comparison.horizon))
-        console.say()
-    console.say(equations_text(comparison))
-    console.json(comparison.as_dict())
+    result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
+    _print(console, model, comparison, result)
+    console.json(result)
+    report.write(console, comparison, result, model)
     return 0
 
 
-def read_runs(options: argparse.Namespace, console: Console, force_driven: bool) -> "list[Run]":
+def read_runs(bags: list[str], namespace: str | None, console: Console, force_driven: bool) -> "list[Run]":
     """The recordings named on the command line, on uniform grids; what is wrong with them is noted."""
     from pneumo_ros.identify.run import make_run
     from pneumo_ros.records import read_recording
 
     runs = []
-    for bag in options.bags:
-        recording = read_recording(bag, options.namespace)
+    for bag in bags:
+        recording = read_recording(bag, namespace)
         for warning in recording.warnings:
             console.note(f"{recording.name}: {warning}")
         runs.append(make_run(recording, force_driven))
     return runs
+
+
+def _print(console: Console, model: "Model", comparison: "Comparison", result: dict[str, Any]) -> None:
+    if "refit" in result:
+        console.say(refit_text(result["refit"]) + "\n")
+    for caution in model.cautions():
+        console.note(f"Note: {caution}")
+    if len(comparison.runs) <= SHOWN_RUNS:
+        for one in comparison.runs:
+            console.say(run_text(one, comparison.horizon) + "\n")
+    else:
+        console.say(runs_text(comparison) + "\n")
+    console.say(equations_text(comparison))
+    console.say("\n" + findings_text(result))
 
 
 def run_text(run: "RunComparison", horizon: float) -> str:
@@ -72,7 +87,7 @@ def run_text(run: "RunComparison", horizon: float) -> str:
     head = ("", f"rms over {horizon:g} s", "largest", "noise", "rms / noise", "fit", "free run rms")
     rows = [head]
     for name, error in run.error.items():
-        words, unit, factor = SHOWN[name]
+        words, unit, factor = SIGNALS[name]
         rms, worst, noise, free = (
             f"{factor * x:.4g} {unit}" for x in (error.rms, error.max, error.noise, run.free[name])
         )
@@ -81,16 +96,37 @@ def run_text(run: "RunComparison", horizon: float) -> str:
     return title + "\n" + columns(rows, right=(1, 2, 3, 4, 5, 6))
 
 
+def runs_text(comparison: "Comparison") -> str:
+    """Many runs, one line each: errors over noise."""
+    signals, equations = list(comparison.runs[0].error), list(comparison.equations)
+    rows = [("rms / noise", "duration", *(TARGETS[name][0] for name in (*signals, *equations)))]
+    for one in comparison.runs:
+        ratios = [one.error[name].ratio for name in signals]
+        ratios += [one.equations[name].ratio_to_noise for name in equations]
+        rows.append((one.name, f"{one.duration:.1f} s", *(f"{ratio:.1f}" for ratio in ratios)))
+    title = f"{len(comparison.runs)} runs, windows of {comparison.horizon:g} s:"
+    return title + "\n" + columns(rows, right=range(1, len(rows[0])))
+
+
 def equations_text(comparison: "Comparison") -> str:
     """One line per equation: its residual along the measured signals, and whether noise explains it."""
-    rows = [
-        (
-            EQUATIONS[name],
-            f"{verdict.residual_rms:.3g} {verdict.unit}",
-            f"{verdict.ratio_to_noise:.1f} x noise",
-            "explained by noise" if verdict.explained_by_noise else "FAILS: noise does not explain it",
-        )
-        for name, verdict in comparison.equations.items()
-    ]
+    rows = []
+    for name, judged in comparison.equations.items():
+        if judged.explained_by_noise is None:
+            rows.append((EQUATIONS[name][0], "-", "-", "not judged: nothing slides in these recordings"))
+            continue
+        said = "explained by noise" if judged.explained_by_noise else "FAILS: noise does not explain it"
+        sizes = (f"{judged.residual_rms:.3g} {judged.unit}", f"{judged.ratio_to_noise:.1f} x noise")
+        rows.append((EQUATIONS[name][0], *sizes, said))
     title = f"Equations of '{comparison.model}', residual along the measured signals:"
     return title + "\n" + columns(rows, right=(1, 2))
+
+
+def findings_text(result: dict[str, Any]) -> str:
+    """Where it fails: a line for each equation and signal that noise does not explain, and what can be said of it."""
+    lines = [verdict(result)]
+    for finding in findings(result):
+        if finding.level != "good":
+            lines.append(f"  {TARGETS[finding.target][0]} {finding.verdict}")
+            lines += [f"    {detail}" for detail in finding.details]
+    return "\n".join(lines)

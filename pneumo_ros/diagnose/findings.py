@@ -31,7 +31,7 @@ def findings(result: Mapping[str, Any]) -> list[Finding]:
 
 def verdict(result: Mapping[str, Any]) -> str:
     """The whole comparison in one sentence."""
-    failing = [n for n, e in result["equations"].items() if not e["explained_by_noise"] and _judged(e)]
+    failing = [n for n, e in result["equations"].items() if e["explained_by_noise"] is False]
     worst = max((s["ratio_to_noise"] or 0.0 for s in result["signals"].values()), default=0.0)
     runs = f"{len(result['runs'])} recording" + ("s" if len(result["runs"]) != 1 else "")
     if not failing:
@@ -45,26 +45,23 @@ def verdict(result: Mapping[str, Any]) -> str:
 
 def _equation(result: Mapping[str, Any], name: str) -> Finding:
     found = result["equations"][name]
-    if not _judged(found):
-        return Finding(name, "open", "not judged: the piston never slides" if name == "momentum" else "not judged")
+    if found["explained_by_noise"] is None:
+        return Finding(
+            name, "open", "is not judged: the piston never slides" if name == "momentum" else "is not judged"
+        )
     size = f"{amount(found['residual_rms'], name)}, {times(found['ratio_to_noise'])} noise"
     if found["explained_by_noise"]:
-        return Finding(name, "good", f"explained by noise ({size})")
+        return Finding(name, "good", f"is explained by noise ({size})")
     details = (*_where(name, found), *_follows(found), *_when(result, name))
-    return Finding(name, "bad", f"FAILS: {size}", details)
+    return Finding(name, "bad", f"fails: {size}", details)
 
 
 def _signal(result: Mapping[str, Any], name: str) -> Finding:
     found = result["signals"][name]
     size = f"{amount(found['rms'], name)} over {result['horizon_s']:g} s, {times(found['ratio_to_noise'])} noise"
     if found["explained_by_noise"]:
-        return Finding(name, "good", f"explained by noise ({size})")
-    return Finding(name, "bad", f"off by {size}", (*_where(name, found), *_when(result, name)))
-
-
-def _judged(found: Mapping[str, Any]) -> bool:
-    ratio = found["ratio_to_noise"]
-    return ratio is not None and ratio == ratio
+        return Finding(name, "good", f"is explained by noise ({size})")
+    return Finding(name, "bad", f"is off by {size}", (*_where(name, found), *_when(result, name)))
 
 
 def _where(name: str, found: Mapping[str, Any]) -> Iterator[str]:

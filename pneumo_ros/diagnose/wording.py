@@ -10,8 +10,8 @@ SIGNALS = {
 }
 EQUATIONS = {
     "momentum": ("momentum", "N", 1.0),
-    "chamber_a": ("chamber a", "g/s", 1e3),
-    "chamber_b": ("chamber b", "g/s", 1e3),
+    "chamber_a": ("chamber a", "mg/s", 1e6),
+    "chamber_b": ("chamber b", "mg/s", 1e6),
 }
 TARGETS = SIGNALS | EQUATIONS
 REGIMES = {

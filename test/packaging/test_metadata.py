@@ -18,7 +18,7 @@ from pneumo_ros.environment import LIBRARIES, ROS_MODULES
 ROOT = Path(__file__).parents[2]
 PACKAGE_XML = ElementTree.parse(ROOT / "package.xml").getroot()
 # import name -> rosdep key, for what pip and rosdep call differently
-ROSDEP = {name: f"python3-{name}" for name in ("numpy", "scipy", "numba", "yaml", "plotly")}
+ROSDEP = {name: f"python3-{name}" for name in ("numpy", "scipy", "numba", "yaml", "plotly", "matplotlib")}
 BY_PIP_ONLY = {"rosbags", "mcap", "apsw", "lz4", "zstandard"}  # rosbags and mcap have no rosdep key and bring the rest
 PART_OF = {"builtin_interfaces": "std_msgs", "llvmlite": "numba"}  # always there with the other, in its version
 
@@ -80,7 +80,8 @@ def test_email_is_one_colcon_accepts() -> None:
 
 def test_everything_imported_is_declared() -> None:
     declared = {element.text for tag in ("depend", "exec_depend") for element in PACKAGE_XML.findall(tag)}
-    asked = [*SETUP["install_requires"], *SETUP["extras_require"]["report"]]
+    extras = SETUP["extras_require"]
+    asked = [*SETUP["install_requires"], *extras["report"], *extras["figures"]]
     required = {re.split(r"[<>=]", name)[0] for name in asked}
     for name in third_party_imports():
         name = PART_OF.get(name, name)
@@ -89,9 +90,7 @@ def test_everything_imported_is_declared() -> None:
             assert name in BY_PIP_ONLY or ROSDEP[name] in declared
         else:
             assert name in declared, f"package.xml lacks <exec_depend>{name}</exec_depend>"
-            wheels = {
-                wheel.removeprefix("ros-kilted-").removeprefix("ros-") for wheel in SETUP["extras_require"]["ros"]
-            }
+            wheels = {wheel.removeprefix("ros-kilted-").removeprefix("ros-") for wheel in extras["ros"]}
             # rcl_interfaces comes with rclpy's wheel
             assert name.replace("_", "-") in wheels | {"rcl-interfaces"}, f"extra [ros] lacks {name}"
             assert name in ROS_MODULES, f"environment.ROS_MODULES lacks {name}"

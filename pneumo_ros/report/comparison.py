@@ -1,0 +1,114 @@
+"""The report of `pneumo compare`: its sections, from the verb's JSON and the series beside it."""
+
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.diagnose.findings import findings, verdict
+from pneumo_ros.diagnose.wording import REGIMES, TARGETS, amount, percent, times
+from pneumo_ros.report.chart import HeatMap, Report, Section
+from pneumo_ros.report.equations import equations_section
+from pneumo_ros.report.friction import friction_section
+from pneumo_ros.report.heat import heat
+from pneumo_ros.report.machine import machine_section
+from pneumo_ros.report.markup import Html, scrolling, tag
+from pneumo_ros.report.origin import origin_section
+from pneumo_ros.report.runs import runs_section, thinning
+
+if TYPE_CHECKING:
+    from pneumo_ros.diagnose.compare import Comparison
+    from pneumo_ros.plant import Model
+
+
+def comparison_report(
+    result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]
+) -> Report:
+    """Everything `compare` has to show; other verbs put their sections beside these."""
+    judged = findings(result)
+    return Report(
+        title=f"Model '{result['model']}' against {_count(result)}",
+        verdict=verdict(result),
+        good=all(one.level != "bad" for one in judged),
+        sections=(
+            overview_section(result),
+            findings_section(result),
+            runs_section(result, comparison, thinning(comparison)),
+            equations_section(result),
+            regimes_section(result),
+            *friction_section(result),
+            machine_section(model, result.get("refit")),
+            origin_section(origin),
+        ),
+        result=result | {"provenance": origin},
+    )
+
+
+def _count(result: dict[str, Any]) -> str:
+    runs = result["runs"]
+    return str(runs[0]["name"]) if len(runs) == 1 else f"{len(runs)} recordings"
+
+
+def overview_section(result: dict[str, Any]) -> Section:
+    """The heat map: runs x signals and equations, each cell leads to its run."""
+    targets = [*result["signals"], *result["equations"]]
+    ratios, texts = [], []
+    for run in result["runs"]:
+        found = {**run["error"], **run["equations"]}
+        ratios.append([found[name]["ratio_to_noise"] for name in targets])
+        texts.append([amount(found[name].get("rms", found[name].get("residual_rms")), name) for name in targets])
+    heat_map = HeatMap(
+        name="overview",
+        title=f"Error over sensor noise: signals predicted over {result['horizon_s']:g} s, residuals of the equations",
+        rows=[run["name"] for run in result["runs"]],
+        columns=[TARGETS[name][0] for name in targets],
+        ratios=ratios,
+        texts=texts,
+        hrefs=[f"#run-{k}" for k in range(1, len(result["runs"]) + 1)],
+    )
+    text = "1 x means that only noise is left. A cell leads to its run."
+    return Section("overview", "Overview", tag("p", text, class_="soft"), heat=heat_map)
+
+
+def findings_section(result: dict[str, Any]) -> Section:
+    """The sentences: what fails, where, following what, and when."""
+    items = [
+        tag(
+            "li",
+            tag("b", f"{TARGETS[one.target][0].capitalize()} {one.verdict}"),
+            tag("ul", [tag("li", detail) for detail in one.details]) if one.details else "",
+            class_=one.level,
+        )
+        for one in findings(result)
+    ]
+    return Section("findings", "Where it fails", tag("ul", items, class_="findings"))
+
+
+def regimes_section(result: dict[str, Any]) -> Section:
+    """Regimes x signals and equations over all runs: error over noise, and share of the error."""
+    groups = {**result["signals"], **result["equations"]}
+    head = tag("tr", tag("th", "regime", scope="col"), tag("th", "time", scope="col", class_="number"),
+               [tag("th", TARGETS[name][0], scope="col") for name in groups])  # fmt: skip
+    rows = [_regime_row(result, name, groups) for name in result["regimes"]]
+    caption = tag("caption", "Error over noise in each regime, and the regime's share of the squared error")
+    inner = tag("table", caption, tag("thead", head), tag("tbody", rows), class_="heat")
+    meanings = [tag("li", tag("b", REGIMES[n]), f": {text}") for n, text in result["regimes"].items()]
+    notes = (
+        "A sample may be in several regimes, so only the shares of stick and slide add up to 100 %. The momentum is "
+        "judged while the piston slides: at rest friction takes any value up to its limit."
+    )
+    body = (tag("p", notes, class_="soft"), scrolling(inner, "Regimes"),
+            tag("details", tag("summary", "What the regimes are"), tag("ul", meanings)))  # fmt: skip
+    return Section("regimes", "Regimes", Html("".join(body)))
+
+
+def _regime_row(result: dict[str, Any], name: str, groups: dict[str, Any]) -> Html:
+    seconds = sum(run["regimes"].get(name, 0.0) * run["duration_s"] for run in result["runs"])
+    total = sum(run["duration_s"] for run in result["runs"])
+    cells = []
+    for found in groups.values():
+        share = found["regimes"].get(name)
+        if share is None or share["seconds"] < 0.05:
+            cells.append(tag("td", tag("small", "not judged" if seconds else "-"), class_="heat-none"))
+            continue
+        text = (tag("b", times(share["ratio_to_noise"])), " ", tag("small", f"{percent(share['share'])} of the error"))
+        cells.append(tag("td", text, class_=heat(share["ratio_to_noise"])))
+    time = tag("td", f"{percent(seconds / total)}", class_="number")
+    return tag("tr", tag("th", REGIMES[name], scope="row"), time, cells)

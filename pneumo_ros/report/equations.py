@@ -1,0 +1,71 @@
+"""The residual of every equation against what it may depend on."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, percent, times
+from pneumo_ros.report.chart import Chart, Panel, Section, Trace
+from pneumo_ros.report.markup import tag
+
+Array = NDArray[np.float64]
+
+
+def equations_section(result: dict[str, Any]) -> Section:
+    """A part for every equation; those that noise explains are folded."""
+    text = (
+        "Residual along the measured signals, all runs together: means over bins of each variable with their 95 % "
+        "interval, what noise alone scatters single windows by (dotted), and below the seconds each bin rests on. A "
+        "share is what the bins of one half of the recordings predict in the other half, beyond a constant. The "
+        "residual is what was measured minus what the model claims: a force or flow that the model lacks."
+    )
+    parts = tuple(_equation(name, found) for name, found in result["equations"].items())
+    return Section("equations", "Equations", tag("p", text, class_="soft"), parts=parts)
+
+
+def _equation(name: str, found: dict[str, Any]) -> Section:
+    state = {True: "explained by noise", False: "fails", None: "not judged"}[found["explained_by_noise"]]
+    size = f"{amount(found['residual_rms'], name)} rms, {times(found['ratio_to_noise'])} noise"
+    order = sorted(found["against"], key=lambda variable: -found["against"][variable]["explained_share"])
+    constant = max((one["constant_share"] for one in found["against"].values()), default=0.0)
+    words = f"{size}. A constant explains {percent(constant)} of the squared residual."
+    return Section(
+        f"equation-{name}",
+        f"{EQUATIONS[name][0].capitalize()}: {state}",
+        tag("p", words if order else f"{size}. Too few windows to look for a dependence."),
+        charts=tuple(_chart(name, variable, found["against"][variable]) for variable in order),
+        folded=found["explained_by_noise"] is not False,
+        columns=2,
+    )
+
+
+def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
+    _, unit, factor = EQUATIONS[equation]
+    words, x_unit, x_factor = VARIABLES[variable]
+    at, mean, low, high, noise, seconds, begin, end = (
+        np.array([np.nan if v is None else v for v in found[key]], dtype=float)
+        for key in ("at", "mean", "low", "high", "noise", "seconds", "from", "to")
+    )
+    x = x_factor * at
+    traces = (
+        Trace("95 % of the mean", "first", "band", x, factor * low, factor * high),
+        Trace("mean residual", "first", "line", x, factor * mean),
+        Trace("noise of a window", "noise", "line", x, factor * noise),
+        Trace("noise of a window", "noise", "line", x, -factor * noise),
+    )
+    panels = (
+        Panel(f"residual [{unit}]", traces, share=2.4),
+        Panel("seconds", (_coverage(x_factor * begin, x_factor * end, seconds),)),
+    )
+    share = f"{words.capitalize()} explains {percent(found['explained_share'])} of the squared residual."
+    return Chart(
+        f"{equation}-{variable}", f"Against {words}", share, f"{words} [{x_unit}]", panels, height=300, legend=False
+    )
+
+
+def _coverage(begin: Array, end: Array, seconds: Array) -> Trace:
+    """A block over every bin, nothing where none is."""
+    x = np.stack([begin, begin, end, end], axis=1).ravel()
+    y = np.stack([0.0 * seconds, seconds, seconds, 0.0 * seconds], axis=1).ravel()
+    return Trace("coverage", "quiet", "area", x, y)

@@ -1,0 +1,119 @@
+"""A report as one HTML file: everything it needs is inside, and it may load nothing from elsewhere."""
+
+import base64
+import hashlib
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from pneumo_ros.report.chart import Chart, Panel, Report, Section, Trace
+from pneumo_ros.report.heat import heat_table
+from pneumo_ros.report.markup import Html, data_block, tag
+from pneumo_ros.report.series import encode
+
+
+def page_html(report: Report) -> Html:
+    """The whole page as text. Scripts run only by their hash, so that no text of a recording can become one."""
+    from plotly.offline import get_plotlyjs
+
+    scripts = [get_plotlyjs(), *(_asset(name) for name in ("series.js", "plots.js", "page.js"))]
+    charts = {figure.name: chart_json(figure) for figure in report.charts() if isinstance(figure, Chart)}
+    body = (
+        tag("a", "Skip to the content", class_="skip", href="#content"),
+        _header(report),
+        tag("main", [section_html(section) for section in report.sections], id="content", tabindex="-1"),
+        data_block("result", report.result),
+        data_block("charts", charts),
+        *(Html(f"<script>{text}</script>") for text in scripts),
+    )
+    head = (
+        tag("meta", charset="utf-8"),
+        tag("meta", http_equiv="Content-Security-Policy", content=_policy(scripts)),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="color-scheme", content="light dark"),
+        tag("title", report.title),
+        Html(f"<style>{_asset('page.css')}</style>"),
+    )
+    page = tag("html", tag("head", head), tag("body", body), lang="en")
+    return Html(f"<!doctype html>\n{page}\n")
+
+
+def _policy(scripts: list[str]) -> str:
+    """Nothing is fetched; scripts run by hash alone; plots set styles and make pictures of themselves."""
+    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
+    hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
+    return (
+        f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data: blob:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _asset(name: str) -> str:
+    return files("pneumo_ros.report").joinpath(f"assets/{name}").read_text(encoding="utf-8")
+
+
+def _header(report: Report) -> Html:
+    links = [tag("li", tag("a", section.title, href=f"#{section.identifier}")) for section in report.sections]
+    return tag(
+        "header",
+        tag("p", "pneumo_ros", class_="brand"),
+        tag("h1", report.title),
+        tag("p", report.verdict, class_=f"verdict {'good' if report.good else 'bad'}"),
+        tag("nav", tag("ul", links), aria_label="Sections"),
+        tag("noscript", tag("p", "The plots need JavaScript; tables and numbers do not.", class_="warning")),
+        tag("p", class_="warning", id="trouble", hidden=True, role="alert"),
+    )
+
+
+def section_html(section: Section, level: int = 2) -> Html:
+    """A section with its figures and parts; a folded one opens by a click."""
+    heading = tag(f"h{level}", section.title, id=f"{section.identifier}-title")
+    figures = [figure_html(chart) for chart in section.charts]
+    inner: list[Html] = [section.body]
+    if section.heat:
+        inner.append(heat_table(section.heat))
+    if figures:
+        inner.append(tag("div", figures, class_="charts" if section.columns == 1 else "charts beside"))
+    inner += [section_html(part, level + 1) for part in section.parts]
+    label = f"{section.identifier}-title"
+    if section.folded:
+        folded = tag("details", tag("summary", heading), inner)
+        return tag("section", folded, id=section.identifier, aria_labelledby=label)
+    return tag("section", heading, inner, id=section.identifier, aria_labelledby=label, tabindex="-1")
+
+
+def figure_html(chart: Chart) -> Html:
+    """The place of a chart, which the page's script fills once it comes into view."""
+    words = f"{chart.title}. {chart.words}"
+    place = tag("div", class_="plot", id=chart.name, style=f"height:{chart.height}px", role="img", aria_label=words)
+    caption = tag("figcaption", tag("strong", chart.title), " ", tag("span", chart.words))
+    return tag("figure", caption, place)
+
+
+def chart_json(chart: Chart) -> dict[str, Any]:
+    """A chart for the page's script."""
+    return {
+        "title": chart.title, "x": chart.x_title, "link": chart.link, "span": chart.span, "logX": chart.log_x,
+        "legend": chart.legend, "panels": [_panel(panel) for panel in chart.panels],
+    }  # fmt: skip
+
+
+def _panel(panel: Panel) -> dict[str, Any]:
+    return {
+        "title": panel.title, "share": panel.share, "ticks": panel.ticks,
+        "traces": [_trace(trace) for trace in panel.traces],
+    }  # fmt: skip
+
+
+def _trace(trace: Trace) -> dict[str, Any]:
+    found: dict[str, Any] = {"name": trace.name, "role": trace.role, "kind": trace.kind, "hidden": trace.hidden}
+    if trace.resolution > 0.0:
+        return found | {"series": encode(trace.x, trace.y, trace.resolution)}
+    found |= {"x": _numbers(trace.x), "y": _numbers(trace.y)}
+    return found | ({"high": _numbers(trace.y_high)} if trace.y_high is not None else {})
+
+
+def _numbers(values: Any) -> list[float | None]:
+    """Six significant digits are more than a screen shows; null where there is nothing."""
+    return [float(f"{v:.6g}") if np.isfinite(v) else None for v in values]
