@@ -1,6 +1,7 @@
 """The same tree installs with pip and with colcon, and what is installed runs."""
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -119,6 +120,7 @@ def test_colcon_puts_data_where_ros2_looks(workspace: Path) -> None:
 
 
 def test_what_colcon_built_runs(workspace: Path) -> None:
-    where = sourced(workspace, f"{sys.executable} -c 'import pneumo_ros; print(pneumo_ros.__file__)'")
+    python = shlex.quote(sys.executable)
+    where = sourced(workspace, f"{python} -c 'import pneumo_ros; print(pneumo_ros.__file__)'")
     assert str(workspace) in where, "the checkout was imported instead"
-    assert "lugre_friction" in sourced(workspace, "./install/pneumo_ros/lib/pneumo_ros/pneumo effects")
+    assert "lugre_friction" in sourced(workspace, f"{python} install/pneumo_ros/lib/pneumo_ros/pneumo effects")

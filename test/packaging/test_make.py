@@ -56,7 +56,7 @@ def test_the_python_asked_for_is_named(machine: Path) -> None:
 
 
 def test_a_python_without_venv(machine: Path) -> None:
-    program(machine, "python3", f'case "$*" in *ensurepip*) exit 1;; esac; exec {sys.executable} "$@"')
+    program(machine, "python3", f'case "$*" in *ensurepip*) exit 1;; esac; exec "{sys.executable}" "$@"')
     version = ".".join(map(str, sys.version_info[:2]))
     assert f"sudo apt install python{version}-venv" in make_venv(machine)
 
