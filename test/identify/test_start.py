@@ -8,6 +8,7 @@ from identify.making import own, rig
 
 from pneumo_ros.identify.guess import first_guess
 from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.segments import cut_at
 from pneumo_ros.identify.start import start_states
 from pneumo_ros.plant import Model, load_model
 
@@ -98,6 +99,17 @@ def test_a_dead_sensor_still_gives_finite_starts() -> None:
     model, _, run = own("steps", seconds=5.0)
     dead = replace(run, pressure_a=np.full(len(run), 3e5))
     assert np.isfinite(start_states(model, dead, np.arange(0, 5000, 250))).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_predictions_that_leave_all_bounds_can_still_be_squared() -> None:
+    model, _, run = own("steps", seconds=5.0)
+    segments = cut_at(model, [run], [np.array([0, 1000])], 100)
+    states = segments.guess.copy()
+    states[0, 2], states[1, 0] = 1e200, np.nan
+    residuals = segments.residuals(model, states)
+    assert np.isfinite(np.sum(residuals**2, axis=2)).all()
+    assert np.sqrt(np.mean(residuals**2, axis=2)).min() > 1e8
 
 
 def first(run: Run, samples: int) -> Run:
