@@ -102,6 +102,8 @@ def workspace(request: pytest.FixtureRequest, tree: Path, tmp_path_factory: pyte
 
 def sourced(workspace: Path, command: str) -> str:
     """Output of a shell command after sourcing the workspace."""
+    if " " in str(workspace):
+        pytest.skip("the setup.sh that colcon writes does not stand a space in its path")
     return run("/bin/sh", "-c", f". ./install/setup.sh && {command}", folder=workspace)
 
 
