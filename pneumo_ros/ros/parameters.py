@@ -100,8 +100,12 @@ class Parameters:
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
         setting = self._settings.get(parameter.name)
-        if setting and type(setting.default) is float and parameter.type_ == Parameter.Type.INTEGER:
+        if setting is None:
+            return parameter
+        if type(setting.default) is float and parameter.type_ == Parameter.Type.INTEGER:
             return Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
+        if isinstance(setting.default, list) and parameter.type_ == Parameter.Type.INTEGER_ARRAY:
+            return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(v) for v in parameter.value])
         return parameter
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:

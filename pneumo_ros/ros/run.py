@@ -1,7 +1,6 @@
 """The life of a process of nodes: start, spin in a thread, end with exit code 0 on SIGINT and SIGTERM."""
 
 import gc
-import signal
 import sys
 import threading
 import traceback
@@ -16,6 +15,7 @@ from rclpy.task import Future
 
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.stopping import STOP, listen_for_signals
 
 try:  # twice as fast; part of rclpy since Kilted
     from rclpy.experimental import EventsExecutor
@@ -72,13 +72,10 @@ def run(make: Callable[[], Sequence[AxisNode]], name: str, ros_args: Sequence[st
     `name` introduces messages; `ros_args` are the arguments rclpy reads, None for those of the command line. A
     PneumoError is told in one line and gives its exit code; anything else is told with its traceback and gives 1.
     """
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        # rclpy's own handlers would end the context before the nodes could send their last messages
-        signal.signal(number, lambda *_: stop.set())
+    listen_for_signals()
     try:
         _init(ros_args)
-        _live(make, stop)
+        _live(make)
     except PneumoError as error:
         print(f"{name}: error: {error}", file=sys.stderr)
         return error.exit_code
@@ -97,19 +94,19 @@ def _init(ros_args: Sequence[str] | None) -> None:
         raise UsageError(f"ROS arguments are refused: {error}") from error
 
 
-def _live(make: Callable[[], Sequence[AxisNode]], stop: threading.Event) -> None:
+def _live(make: Callable[[], Sequence[AxisNode]]) -> None:
     nodes: Sequence[AxisNode] = ()
     spinner = None
     try:
         nodes = make()
-        spinner = Spinner(nodes, stop.set)
+        spinner = Spinner(nodes, STOP.set)
         with spinner:
             gc.collect()
             gc.freeze()  # what exists now stays; collections under way then take microseconds
             for node in nodes:
-                node.end = stop.set
+                node.end = STOP.set
                 node.start()
-            stop.wait()
+            STOP.wait()
             for node in nodes:
                 node.finish()
     finally:

@@ -121,7 +121,8 @@ def test_gains_change_under_way_or_not_at_all(tmp_path: Path) -> None:
         assert not plant.probe.set("controller", max_voltage=0.5)[0]  # inside the dead zone
         assert not plant.probe.set("controller", reference__shape="circle")[0]
         assert plant.probe.get("controller", "pid.proportional") == 100.0
-        assert plant.probe.set("controller", pid__proportional=20.0) == (True, "")
+        assert plant.probe.set("controller", reference__levels=[0, 1]) == (True, "")  # whole numbers serve, too
+        assert plant.probe.set("controller", pid__proportional=20) == (True, "")
         assert 0.78 < plant.answer(0.0) < usual - 2.0
         assert plant.probe.set("controller", reference__shape="constant", reference__position=-0.05) == (True, "")
         assert plant.answer(0.0) < -0.78

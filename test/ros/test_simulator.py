@@ -229,7 +229,7 @@ def test_signals_end_it_with_0(tmp_path: Path, number: int) -> None:
     ("parameters", "code", "said"),
     [
         ({"publsh_rate": 100.0}, 2, "did you mean publish_rate?"),
-        ({"effects": ["dead_zne"]}, 2, "did you mean dead_zone?"),
+        ({"effects": ["dead_zne"]}, 2, "did you mean dead_zone"),
         ({"piston.mas": 3.0}, 2, "did you mean piston.mass"),
         ({"air.temperature": -1.0}, 2, "air.temperature"),
         ({"model": "emps"}, 2, "emps has no chambers"),
@@ -262,3 +262,55 @@ def test_a_machine_file_is_a_parameter_file_and_nothing_may_be_missing_in_it(tmp
         assert process.end() == 0
     assert "rod_atmospheric_force" not in machine["effects"]
     assert machine["piston"]["mass"] == 7.0
+
+
+RUNAWAY = """
+from pneumo_ros.plant import Effect, Parameter
+
+
+class Runaway(Effect):
+    \"\"\"Negative friction that no step is short enough for.\"\"\"
+
+    gain = Parameter(1e9, "N s3/m3", "force per cubed velocity", low=0.0)
+
+    def equations(v, gain):
+        force = -gain * v * v * v
+        return force
+"""
+
+
+def test_an_effect_of_ones_own_and_a_state_that_leaves_the_finite_numbers(tmp_path: Path) -> None:
+    (tmp_path / "runaway.py").write_text(RUNAWAY)
+    command = node("simulator", "-r", "__ns:=/runaway", effects=[*AXIS.effects, "runaway"])
+    command[2:2] = ["--effects", "runaway.py"]
+    with running(*command, cwd=tmp_path) as process, probe("runaway") as one:
+        one.matched(one.command)
+        one.more("joint_states")
+
+        def exploded() -> bool:
+            one.send(2.0, 0.02)
+            return "left the finite numbers" in process.said
+
+        one.wait(exploded, "an explosion")
+        message, _ = one.health("runaway/simulator")
+        assert "left the finite numbers" in message
+        assert not one.pause(False).success
+        assert all(math.isfinite(m.position[0]) for m in one.heard["joint_states"])
+        assert one.set("simulator", runaway__gain=0.0) == (True, "")
+        assert one.trigger("simulator/reset").success
+        assert one.more("joint_states", 3)[-1].position[0] == pytest.approx(0.0, abs=1e-6)
+        assert process.end() == 0
+
+
+def test_a_signal_at_the_very_start_ends_it_with_0_as_well(tmp_path: Path) -> None:
+    """While rclpy is still being imported: as soon as the process listens to SIGTERM at all."""
+    with running(*node("simulator", "-r", "__ns:=/early"), cwd=tmp_path) as process:
+        status = Path(f"/proc/{process.process.pid}/status")
+        while not caught(status.read_text()) >> (signal.SIGTERM - 1) & 1:
+            time.sleep(1e-3)
+        assert process.end(signal.SIGINT) == 0, process.said
+
+
+def caught(status: str) -> int:
+    """Bits of the signals that a process handles."""
+    return int(next(line for line in status.splitlines() if line.startswith("SigCgt:")).split()[1], 16)

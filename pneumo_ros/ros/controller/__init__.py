@@ -1,5 +1,13 @@
 """`ros2 run pneumo_ros controller`: position control as a node."""
 
-from pneumo_ros.ros.controller.entry import main
+from collections.abc import Sequence
 
-__all__ = ["main"]
+from pneumo_ros.ros.stopping import listen_for_signals
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the controller; returns the exit code of the process."""
+    listen_for_signals()
+    from pneumo_ros.ros.controller.entry import main as run_node
+
+    return run_node(args)

@@ -2,6 +2,6 @@
 
 import sys
 
-from pneumo_ros.ros.controller.entry import main
+from pneumo_ros.ros.controller import main
 
 sys.exit(main())

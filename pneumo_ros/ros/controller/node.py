@@ -29,7 +29,7 @@ from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
 REFERENCE = "position/reference"
-CHECKS = 4  # per timeout
+CHECK = 0.02  # s between looks for silence
 
 
 class Controller(AxisNode):
@@ -63,7 +63,7 @@ class Controller(AxisNode):
         for chamber, topic in (("a", PRESSURE_A), ("b", PRESSURE_B)):
             self.create_subscription(FluidPressure, topic, partial(self._pressure, chamber), SUBSCRIBE, raw=True)
         self.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
-        self.create_timer(self.loop.timeout / CHECKS, self._watch, clock=self.steady_clock)
+        self.create_timer(CHECK, self._watch, clock=self.steady_clock)
 
     def _simulated(self) -> int:
         """While the plant pauses, this time does so, too: no silence."""

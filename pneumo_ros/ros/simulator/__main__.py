@@ -2,6 +2,6 @@
 
 import sys
 
-from pneumo_ros.ros.simulator.entry import main
+from pneumo_ros.ros.simulator import main
 
 sys.exit(main())
