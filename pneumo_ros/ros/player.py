@@ -19,6 +19,7 @@ from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.outputs import Outputs
 from pneumo_ros.ros.playback import Playback
+from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.run import run
 from pneumo_ros.ros.setting import Setting
 
@@ -30,12 +31,13 @@ LATE = 0.02  # s behind its time at which a message is worth a word
 
 SETTINGS = (
     Setting("input", "", "recording to play: a rosbag2 folder, or an .mcap or .db3 file", live=False),
-    Setting("topics", ("*",), "topics to play, named as recorded; * and ? stand for any letters", live=False),
+    Setting("topics", ["*"], "topics to play, named as recorded; * and ? stand for any letters", live=False),
     Setting("rate", 1.0, "seconds of the recording that pass in one second", "", 1e-3, 1e3, live=False),
     Setting("start_offset", 0.0, "time to skip at the start; latched topics come all the same", "s", 0.0, live=False),
     Setting("loop", False, "begin again at the end", live=False),
     Setting("publish_clock", False, "send the recorded time on /clock", live=False),
     Setting("wait", 3.0, "longest wait for a subscriber to every topic before the start", "s", 0.0, 3600.0, live=False),
+    PRIORITY,
 )
 
 
@@ -91,6 +93,7 @@ class Player(AxisNode):
     def _play(self) -> None:
         """The thread that plays: waits for subscribers, plays once or for ever, ends the process."""
         try:
+            take_priority(self.parameters[PRIORITY.name])
             self._await_subscribers()
             while not self._playback.stop.is_set():
                 self._playback.play(self._send, self._tick if self._clock_output else None)

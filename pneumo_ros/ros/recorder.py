@@ -16,6 +16,7 @@ from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.intake import Intake, Taken, latches
 from pneumo_ros.ros.message_classes import definition
 from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.run import run
 from pneumo_ros.ros.selection import Selection
 from pneumo_ros.ros.setting import Setting
@@ -26,9 +27,10 @@ DISCOVER = 0.2  # s between two looks at the publishers
 SETTINGS = (
     Setting("output", "", "folder to make; none: recording_ and the time, in the current folder", live=False),
     Setting(
-        "topics", (*TYPES, "/diagnostics"),
+        "topics", [*TYPES, "/diagnostics"],
         "topics to record, of the node's namespace unless they start with /; * and ? stand for any letters", live=False,
     ),
+    PRIORITY,
 )  # fmt: skip
 
 
@@ -44,6 +46,7 @@ class Recorder(AxisNode):
         self._lock = threading.Lock()  # the end comes from another thread than the callbacks
         self._ended = False
         self._held: list[Taken] = []
+        self._priority = 0
         self._began = time.monotonic()
         self._intake = Intake(self)
         for topic, (kind, latched) in self._selection.known.items():
@@ -51,6 +54,10 @@ class Recorder(AxisNode):
         self.create_timer(TAKE, self._take, clock=self.steady_clock)
         self.create_timer(DISCOVER, self._discover, clock=self.steady_clock)
         self.get_logger().info(f"recording to {self._writer.path}")
+
+    def start(self) -> None:
+        """Ask for real-time scheduling: beside nodes that have it, the middleware's queues would overflow unread."""
+        self._priority = take_priority(self.parameters[PRIORITY.name])
 
     def health(self) -> Health:
         """Counts of messages recorded and lost."""
@@ -61,6 +68,7 @@ class Recorder(AxisNode):
             "messages": sum(counts.values()),
             "topics": len(counts),
             "lost_messages": sum(lost.values()),
+            "real_time_priority": self._priority,
         }
         warnings = [_lost(lost)] if lost else []
         if not counts:
