@@ -14,19 +14,12 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
+from pneumo_ros.control import Measurement, Pid, closed_loop
+from pneumo_ros.control.reference import sine
 from pneumo_ros.environment import Domain
-
-DOMAIN = Domain()
-os.environ.update(DOMAIN.environment)  # before rclpy is imported
-
-import rclpy  # noqa: E402  # the domain must be chosen first
-from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
-from rclpy.executors import SingleThreadedExecutor  # noqa: E402
-
-from pneumo_ros.control import Measurement, Pid, closed_loop  # noqa: E402
-from pneumo_ros.control.reference import sine  # noqa: E402
-from pneumo_ros.plant import Stepper, load_model  # noqa: E402
+from pneumo_ros.plant import Stepper, load_model
 
 START = 6.0  # s for processes to start, find each other and settle
 REFERENCE = ("-p", "reference.shape:=sine")
@@ -65,6 +58,11 @@ class Listener:
     """Collects what the simulator says on /diagnostics: wall time of the message [s], numbers by name."""
 
     def __init__(self) -> None:
+        # in the ROS domain that the environment names by now
+        import rclpy
+        from diagnostic_msgs.msg import DiagnosticArray
+        from rclpy.executors import SingleThreadedExecutor
+
         rclpy.init()
         self.node = rclpy.create_node("benchmark")
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._take, 10)
@@ -72,7 +70,7 @@ class Listener:
         self.executor.add_node(self.node)
         self.heard: list[tuple[float, dict[str, float]]] = []
 
-    def _take(self, message: DiagnosticArray) -> None:
+    def _take(self, message: Any) -> None:
         for status in message.status:
             if status.name == "simulator":
                 stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
@@ -149,6 +147,8 @@ def main() -> None:
     parser.add_argument("--lockstep-seconds", type=float, default=10.0, help="wall time of each lockstep run")
     parser.add_argument("--rate", type=float, default=1000.0, help="publish rate [Hz] of the real-time runs")
     given = parser.parse_args()
+    domain = Domain()
+    os.environ.update(domain.environment)
     listener = Listener()
     real_time(listener, given.seconds, given.rate)
     for rate in (500.0, 1000.0):

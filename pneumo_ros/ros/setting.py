@@ -52,7 +52,7 @@ class Setting:
     def _coerce_list(self, value: Any) -> list[Any]:
         if isinstance(value, bytes | str) or not hasattr(value, "__iter__"):
             raise UsageError(f"{self.name} is {value!r}; it takes a list, for example {self.default!r}")
-        item = self.default[0] if self.default else ""  # type: ignore[index]  # lists only come here
+        item = self.default[0] if self.default else ""
         one = Setting(self.name, item, self.meaning, self.unit, self.low, self.high)
         return [one.coerce(entry) for entry in value]
 
@@ -63,7 +63,7 @@ class Setting:
         """
         described = ParameterDescriptor(description=self.meaning + self._unit(), read_only=not self.live)
         if type(self.default) is float:
-            low, high = self.finite_range(float(value))  # type: ignore[arg-type]  # a number, as coerced
+            low, high = self.finite_range(float(value))
             described.floating_point_range = [FloatingPointRange(from_value=low, to_value=high, step=0.0)]
         elif type(self.default) is int and math.isfinite(self.low) and math.isfinite(self.high):
             described.integer_range = [IntegerRange(from_value=int(self.low), to_value=int(self.high), step=1)]
