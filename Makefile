@@ -57,7 +57,7 @@ endif
 
 .cache/rig/holdout_steps: | $(READY)
 	@rm -rf .cache/rig
-	@$(BIN)/python test/rig --out .cache/rig --runs holdout_steps --seed 1 --quiet
+	@$(BIN)/python test/rig --out .cache/rig --runs holdout_steps --seed 1 --quiet >/dev/null
 
 demo: $(READY) $(MEASURED) | .cache/tmp
 	@$(BIN)/pneumo demo --recording $(MEASURED) $(DEMO)
