@@ -61,7 +61,7 @@ class Resolver:
         self.effects = effects
         self.states: dict[str, type[Effect]] = {}
         self.owners: dict[str, list[str]] = {}
-        self.writers: dict[str, list[type[Effect]]] = {}
+        self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects and which function of theirs
         for effect in effects:
             self._add(effect)
         self._check_names()
@@ -76,12 +76,17 @@ class Resolver:
             self.states[state] = effect
         for key in effect.parameters:
             self.owners.setdefault(key, []).append(effect.name)
-        for name in effect.functions["equations"].writes if "equations" in effect.functions else ():
+        for key in ("outputs", "equations"):
+            if key in effect.functions:
+                self._add_writes(effect, key)
+
+    def _add_writes(self, effect: type[Effect], key: str) -> None:
+        for name in effect.functions[key].writes:
             if name not in SIGNALS and not name.startswith(("der_", "rate_")):
                 raise UsageError(f"effect {effect.name} returns {name!r}. {unknown_name('signal', name, SIGNALS)}")
             if name in SIGNALS and SIGNALS[name].kind == "input":
                 raise UsageError(f"effect {effect.name} returns {name}, which is an input and cannot be written")
-            self.writers.setdefault(name, []).append(effect)
+            self.writers.setdefault(name, []).append((effect, key))
 
     def _check_names(self) -> None:
         for state in self.states:
@@ -126,7 +131,7 @@ def compose(effects: tuple[type[Effect], ...]) -> Composition:
     """
     resolver = Resolver(effects)
     for effect in effects:
-        for key in ("equations", "advance"):
+        for key in ("equations", "outputs", "advance"):
             if key in effect.functions:
                 resolver.check(effect.functions[key], effect)
     parameters = tuple(f"{effect.name}.{key}" for effect in effects for key in effect.parameters)

@@ -49,13 +49,17 @@ def brief(value: object) -> str:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values."""
+    """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values.
+
+    `neutral` is the value at which the effect adds nothing, for the parameters that have one.
+    """
 
     default: float
     unit: str
     meaning: str
     low: float = -math.inf
     high: float = math.inf
+    neutral: float | None = None
 
     def __post_init__(self) -> None:
         if not (self.low <= self.default <= self.high):
@@ -103,6 +107,9 @@ class Function:
     globals: dict[str, Any] = field(repr=False)
 
 
+FUNCTIONS = ("equations", "outputs", "advance", "caution")
+
+
 class Effect:
     """Base of all effects; subclasses are never instantiated."""
 
@@ -117,7 +124,7 @@ class Effect:
         cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.parameters = {key: value for key, value in vars(cls).items() if isinstance(value, Parameter)}
         cls.states = {key: value for key, value in vars(cls).items() if isinstance(value, State)}
-        present = {key: vars(cls)[key] for key in ("equations", "advance", "caution") if key in vars(cls)}
+        present = {key: vars(cls)[key] for key in FUNCTIONS if key in vars(cls)}
         cls.functions = {key: parse_function(value, f"{cls.__name__}.{key}") for key, value in present.items()}
         if not (cls.__doc__ or "").strip():
             raise UsageError(

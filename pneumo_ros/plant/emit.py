@@ -62,33 +62,35 @@ class FlowWriter:
     def _assemble(self, name: str) -> str:
         writers = self.resolver.writers.get(name, [])
         if name not in SIGNALS:
-            self._call(writers[0])
-            return f"{writers[0].name}__{name}"
+            self._call(*writers[0])
+            return f"{writers[0][0].name}__{name}"
         kind = SIGNALS[name].kind
         if kind == "input":
             return name
         if kind == "single":
             return self._single(name, writers)
         for writer in writers:
-            self._call(writer)
-        terms = [f"{writer.name}__{name}" for writer in writers]
+            self._call(*writer)
+        terms = [f"{effect.name}__{name}" for effect, _ in writers]
         if len(terms) < 2:
             return terms[0] if terms else SIGNALS[name].default
         self.lines.append(f"{name} = {(' + ' if kind == 'sum' else ' * ').join(terms)}")
         return name
 
-    def _single(self, name: str, writers: list[type[Effect]]) -> str:
-        changes = [w for w in writers if name in w.functions["equations"].reads]
+    def _single(self, name: str, writers: list[tuple[type[Effect], str]]) -> str:
+        changes = [w for w in writers if name in w[0].functions[w[1]].reads]
         origins = [w for w in writers if w not in changes]
         if len(origins) > 1:
-            raise UsageError(f"effects {' and '.join(w.name for w in origins)} both set {name}; leave one of them out")
+            raise UsageError(
+                f"effects {' and '.join(w.name for w, _ in origins)} both set {name}; leave one of them out"
+            )
         for origin in origins:
-            self._call(origin)
-        value = f"{origins[0].name}__{name}" if origins else self._default(name)
+            self._call(*origin)
+        value = f"{origins[0][0].name}__{name}" if origins else self._default(name)
         for change in changes:
             self._done[name] = value
-            self._call(change)
-            value = f"{change.name}__{name}"
+            self._call(*change)
+            value = f"{change[0].name}__{name}"
         return value
 
     def _default(self, name: str) -> str:
@@ -109,7 +111,7 @@ class FlowWriter:
             raise UsageError(f"{wanted} is needed, but no effect listed sets it and its default needs {name}")
         return self.value(name)
 
-    def _call(self, effect: type[Effect], function: str = "equations") -> None:
+    def _call(self, effect: type[Effect], function: str) -> None:
         if (effect.name, function) in self._called:
             return
         data = effect.functions[function]

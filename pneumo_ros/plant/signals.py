@@ -56,8 +56,13 @@ _TABLE = (
     Signal("friction_scale", "product", "1", "1.0", "multiplies Coulomb and static friction"),
     Signal("friction_rise", "sum", "N", "0.0", "added to Coulomb and static friction"),
     Signal("static_rise", "sum", "N", "0.0", "added to static friction alone"),
+    Signal("slip", "single", "m/s", "v", "velocity as the Stribeck curve sees it"),
     Signal(
-        "stribeck", "single", "1", "exp(-(v * v) * (1.0 / (stribeck_velocity * stribeck_velocity)))", "Stribeck decay"
+        "stribeck",
+        "single",
+        "1",
+        "exp(-(slip * slip) * (1.0 / (stribeck_velocity * stribeck_velocity)))",
+        "Stribeck decay",
     ),
     # sensors
     Signal("y_measured", "single", "m", "y", "what the position sensor reads"),

@@ -6,7 +6,7 @@ from pneumo_ros.plant.effect import Effect, Parameter
 class ViscousFriction(Effect):
     """Viscous friction F = sigma_2 v, the memoryless linear term of LuGre's f(v)."""
 
-    coefficient = Parameter(30.0, "N s/m", "viscous friction coefficient sigma_2", low=0.0, high=1e6)
+    coefficient = Parameter(30.0, "N s/m", "viscous friction coefficient sigma_2", low=0.0, high=1e6, neutral=0.0)
 
     source = "Canudas de Wit et al. 1995, Eq. 3"
     signature = "residual force in proportion to velocity, odd"

@@ -1,0 +1,20 @@
+"""Friction that lags the velocity."""
+
+from pneumo_ros.plant.effect import Effect, Parameter, State
+
+
+class FrictionLag(Effect):
+    """The lubricant film follows velocity with a time constant: the Stribeck curve sees v_f, v_f' = (v - v_f) / tau."""
+
+    time_constant = Parameter(5e-3, "s", "time constant tau of the film", low=0.0, high=1.0, neutral=0.0)
+
+    v_f = State("m/s", "velocity as the film sees it")
+
+    source = "Hess and Soom 1990, Friction at a lubricated line contact operating at oscillating sliding velocities"
+    signature = "the loop of friction over velocity widens with frequency"
+
+    def equations(v, v_f, time_constant):
+        rate_v_f = 1.0 / max(time_constant, 1e-6)
+        der_v_f = rate_v_f * (v - v_f)
+        slip = v_f
+        return slip, der_v_f, rate_v_f

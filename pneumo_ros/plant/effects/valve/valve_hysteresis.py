@@ -1,0 +1,22 @@
+"""A spool that sticks to where it was."""
+
+from pneumo_ros.plant.effect import Effect, Parameter, State
+
+
+class ValveHysteresis(Effect):
+    """Play of half width H between command and spool, advanced once per step."""
+
+    half_width = Parameter(0.1, "V", "half width H of the play", low=0.0, high=5.0, neutral=0.0)
+
+    seen = State("V", "voltage that reaches the spool")
+
+    source = "play operator, Visintin 1994, Differential Models of Hysteresis; ISO 10770-1, hysteresis"
+    signature = "flow depends on the direction in which the voltage changed last"
+
+    def equations(voltage, seen, half_width):
+        voltage = min(max(seen, voltage - half_width), voltage + half_width)
+        return voltage
+
+    def advance(seen, U, voltage_offset, half_width):
+        seen = min(max(seen, U + voltage_offset - half_width), U + voltage_offset + half_width)
+        return seen

@@ -1,0 +1,26 @@
+"""A spool that takes its time."""
+
+from pneumo_ros.plant.effect import Effect, Parameter, State
+
+
+class ValveSpoolDynamics(Effect):
+    """Spool position of second order behind the command: x'' = omega^2 (u - x) - 2 zeta omega x'."""
+
+    angular_frequency = Parameter(
+        80.0, "rad/s", "natural angular frequency omega", low=5.0, high=3000.0, neutral=3000.0
+    )
+    damping_ratio = Parameter(0.7, "1", "damping ratio zeta", low=0.2, high=5.0)
+
+    x_s = State("V", "spool position")
+    w_s = State("V/s", "spool velocity")
+
+    source = "Beater 2007, Pneumatic Drives, Sec. 7.3; Sorli, Figliolini and Pastorelli 2004"
+    signature = "opposite spikes in both flows after each change of voltage"
+
+    def equations(voltage, x_s, w_s, angular_frequency, damping_ratio):
+        omega = angular_frequency
+        rate_w_s = 2.0 * damping_ratio * omega
+        der_x_s = w_s
+        der_w_s = omega * omega * (voltage - x_s) - rate_w_s * w_s
+        spool = x_s
+        return spool, der_x_s, der_w_s, rate_w_s
