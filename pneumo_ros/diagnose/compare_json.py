@@ -1,5 +1,6 @@
 """The JSON of `pneumo compare`: the contract's keys, and beside them where the errors sit."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.diagnose.regimes import MEANING
@@ -69,10 +70,9 @@ def _equation(comparison: "Comparison", name: str) -> dict[str, Any]:
 
 
 def _signal(comparison: "Comparison", name: str) -> dict[str, Any]:
-    errors = [run.located[name].errors for run in comparison.runs]
-    count = sum(len(e.value) for e in errors)
-    ratio = (_total([run.located[name] for run in comparison.runs]) / max(count, 1)) ** 0.5
-    rms = (sum(float((e.value**2).sum()) for e in errors) / max(count, 1)) ** 0.5
+    counts = [len(run.located[name].errors.value) for run in comparison.runs]
+    errors = [run.error[name] for run in comparison.runs]
+    rms, ratio = (_pooled(counts, found) for found in ([e.rms for e in errors], [e.ratio for e in errors]))
     return {
         "rms": rms,
         "ratio_to_noise": ratio,
@@ -88,3 +88,9 @@ def _shares(shares: dict[str, Share]) -> dict[str, Any]:
 def _total(located: list[Any]) -> float:
     """Sum of squares in noise deviations."""
     return sum(float(((one.errors.value / one.errors.noise) ** 2).sum()) for one in located)
+
+
+def _pooled(counts: list[int], values: list[float]) -> float:
+    """Root of the mean square over runs of different lengths."""
+    total = sum(n * value * value for n, value in zip(counts, values, strict=True))
+    return math.sqrt(total / max(sum(counts), 1))

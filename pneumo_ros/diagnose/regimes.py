@@ -71,7 +71,7 @@ def _breakaway(course: Along, rest: Mask) -> Mask:
 
 def _reversal(course: Along) -> Mask:
     """Around pairs of neighbouring sliding samples with opposite directions."""
-    direction = np.where(np.abs(course.velocity) >= course.rest_below, np.sign(course.velocity), 0.0)
+    direction = _direction(course)
     sliding = np.flatnonzero(direction)
     turns = np.flatnonzero(direction[sliding[1:]] != direction[sliding[:-1]])
     begin, end = sliding[turns], sliding[turns + 1]
@@ -80,6 +80,17 @@ def _reversal(course: Along) -> Mask:
     result = np.zeros(len(direction), dtype=bool)
     for b, e in zip(begin[short], end[short], strict=True):
         result[max(b - reach, 0) : e + reach] = True
+    return result
+
+
+def _direction(course: Along) -> Array:
+    """1, -1 or 0; a way that is kept for less than 20 ms is what a filter makes of a sudden stop."""
+    result = np.zeros(len(course.velocity))
+    for sign in (1.0, -1.0):
+        begin, end = stretches(sign * course.velocity >= course.rest_below)
+        for b, e in zip(begin, end, strict=True):
+            if (e - b) * course.run.sample_time >= SHORTEST_REST:
+                result[b:e] = sign
     return result
 
 

@@ -121,7 +121,7 @@ def worst(errors: Errors, count: int = _WORST) -> list[Interval]:
         if not left[peak] > 0.0:
             break
         first, last = _grow(left, peak)
-        left[first : last + 1] = 0.0
+        left[max(first - 1, 0) : last + 2] = 0.0  # what is beside it is the same event
         found.append(_interval(errors, white, (block >= first) & (block <= last)))
     return found
 

@@ -12,15 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.along import Along
-from pneumo_ros.diagnose.binned import bin_means, clusters
+from pneumo_ros.diagnose.binned import bin_means, clusters, edges
+from pneumo_ros.identify.bump import Bump
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-_HALF = 0.05  # s
+WINDOW = 0.1  # s
 _EDGE = 1e-3  # m from the end of the stroke, where the stop's force is not friction
-_BINS = 24  # per direction, evenly in log velocity
-_FEWEST = 4  # windows in a bin
+_BINS = 24  # per direction, over log velocity
+_FEWEST = 8  # windows in a bin: they overlap, so this is two independent ones
 DIRECTIONS = {"extending": 1.0, "retracting": -1.0}
 
 
@@ -55,41 +56,31 @@ def friction_map(model: Model, courses: Sequence[Along]) -> dict[str, FrictionPo
 
 
 def _direction(velocity: Array, force: Array, claimed: Array, cluster: NDArray[np.int64]) -> FrictionPoints:
-    at = np.geomspace(velocity.min(), np.nextafter(velocity.max(), np.inf), _BINS + 1)
-    at[0] = 0.0
+    count = min(_BINS, max(len(velocity) // (2 * _FEWEST), 1))
+    at = np.exp(edges(np.log(velocity), count))
+    at[0], at[-1] = 0.0, np.inf
     bins = bin_means(velocity, force - claimed, cluster, at, _FEWEST)  # what friction changes within a bin cancels
     model = np.array([claimed[inside].mean() for inside in bins.members])
     force, low, high = (model + column for column in (bins.mean, bins.below, bins.above))
-    return FrictionPoints(bins.centre, force, low, high, model, bins.count * _HALF)
+    return FrictionPoints(bins.centre, force, low, high, model, 0.25 * WINDOW * bins.count)
 
 
 def _windows(model: Model, course: Along) -> tuple[Array, Array, Array, Array]:
     """Time, velocity, measured and claimed friction of the windows in which the piston slides one way."""
-    run, dt = course.run, course.run.sample_time
-    half = min(max(round(_HALF / dt), 4), (len(run) - 1) // 2)
-    weight, second = _test_function(half, dt)
+    run = course.run
+    bump = Bump.of(WINDOW, run.sample_time)
 
-    def mean(signal: Array, by: Array = weight) -> Array:
-        every = np.lib.stride_tricks.sliding_window_view(signal, len(by))
-        return np.asarray(every[::half] @ by)
+    def mean(signal: Array) -> Array:
+        return bump.apply(bump.phi, signal)
 
     force = mean(course.seen["drive"] - course.seen["force"])
-    measured = force - model["piston.mass"] * mean(run.position - run.position.mean(), second)
+    measured = force - model["piston.mass"] * bump.apply(bump.second, run.position)
     away = (np.abs(course.velocity) > course.rest_below) & run.measured & (np.abs(run.position) < course.reach - _EDGE)
-    one_way = np.abs(mean(np.where(away, np.sign(course.velocity), 0.0), np.full(len(weight), 1.0 / len(weight))))
-    sliding = one_way > 1.0 - 1e-9
+    direction = bump.apply(np.ones(bump.width), np.where(away, np.sign(course.velocity), 0.0))
+    sliding = np.abs(direction) > bump.width - 0.5
     return (
         mean(run.time)[sliding],
         mean(course.velocity)[sliding],
         measured[sliding],
         mean(course.seen["friction"])[sliding],
     )
-
-
-def _test_function(half: int, dt: float) -> tuple[Array, Array]:
-    """Weights (2 half + 1,) whose sum over samples is a mean, and those of its second derivative [1/s2]."""
-    tau = np.linspace(-1.0, 1.0, 2 * half + 1)
-    c = 1.0 - tau**2
-    weight = c**6
-    second = (-12.0 * c**5 + 120.0 * tau**2 * c**4) / (half * dt) ** 2
-    return weight / weight.sum(), second / weight.sum()

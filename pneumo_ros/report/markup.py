@@ -22,8 +22,13 @@ def html(content: Content) -> Html:
     if isinstance(content, Html):
         return content
     if isinstance(content, str):
-        return Html(escape(content, quote=True))
+        return Html(_escaped(content))
     return Html("".join(html(part) for part in content))
+
+
+def _escaped(text: str) -> str:
+    """Escaped; bytes of a file name that are no UTF-8 become question marks, as they cannot be written."""
+    return escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
 def tag(element: str, /, *content: Content, **attributes: str | bool | None) -> Html:
@@ -33,7 +38,7 @@ def tag(element: str, /, *content: Content, **attributes: str | bool | None) -> 
         if value is None or value is False:
             continue
         label = key.rstrip("_").replace("_", "-")
-        words.append(label if value is True else f'{label}="{escape(str(value), quote=True)}"')
+        words.append(label if value is True else f'{label}="{_escaped(str(value))}"')
     opened = f"<{' '.join(words)}>"
     return Html(opened if element in _VOID else f"{opened}{html(content)}</{element}>")
 
@@ -68,4 +73,4 @@ def data_block(identifier: str, data: Any) -> Html:
     """JSON in a script element that no browser runs; nothing in it can end the element."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     safe = text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
-    return Html(f'<script type="application/json" id="{escape(identifier, quote=True)}">{safe}</script>')
+    return Html(f'<script type="application/json" id="{_escaped(identifier)}">{safe}</script>')

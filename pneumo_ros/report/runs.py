@@ -12,14 +12,15 @@ from pneumo_ros.report.run_charts import run_charts
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison, RunComparison
 
-BUDGET = 4_200_000  # characters that the series of a page may take
-_PER_VALUE = 1.25  # characters a value takes, measured on recordings of a rig with 10 um and 300 Pa of noise
+BUDGET = 3_600_000  # characters that the series of a page may take; the rest of ten megabytes is plotly's and tables
+# Characters a value takes, rounded up from what recordings with 10 um and 300 Pa of noise took: all of them, thinned
+_WHOLE, _THINNED = 0.6, 1.1
 
 
 def thinning(comparison: "Comparison") -> int:
     """Two of how many samples are kept so that the page stays small: 2 where there is room for all of them."""
     values = sum(4 * len(one.error) * one.samples for one in comparison.runs)
-    return 2 if values * _PER_VALUE <= BUDGET else int(np.ceil(2.5 * values * _PER_VALUE / BUDGET))
+    return 2 if values * _WHOLE <= BUDGET else max(int(np.ceil(2.0 * values * _THINNED / BUDGET)), 3)
 
 
 def runs_section(result: dict[str, Any], comparison: "Comparison", bucket: int) -> Section:

@@ -1,0 +1,49 @@
+"""The identified static map, friction force over velocity, with the residuals below (as the paper's Fig. 4)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.wording import number
+from pneumo_ros.report.chart import Chart, Panel, Section, Trace
+from pneumo_ros.report.markup import tag
+
+Array = NDArray[np.float64]
+
+
+def static_map_section(result: dict[str, Any]) -> Section:
+    """Points, curves and residuals of an identification's JSON."""
+    words = (
+        f"Each dot is a window of {result['map']['window_s']:g} s of steady motion: mean velocity, and the friction "
+        "force that the pressures balance there (drive - load - mass x acceleration). The line is the friction of the "
+        "identified model at constant velocity, the dotted one that of the machine file before."
+    )
+    return Section("static-map", "Static friction map", tag("p", words, class_="soft"), charts=(_chart(result),))
+
+
+def _chart(result: dict[str, Any]) -> Chart:
+    points, curve, breaks = result["map"]["points"], result["map"]["curve"], result["breakaways"]
+    velocity, force, residual, spread = (
+        np.array(points[key], dtype=float) for key in ("velocity", "force", "residual", "force_std")
+    )
+    at, model, before = (np.array(curve[key], dtype=float) for key in ("velocity", "friction", "before"))
+    order = np.argsort(velocity)
+    top = [
+        Trace("before", "noise", "line", at, before),
+        Trace("identified", "model", "line", at, model),
+        Trace("measured", "measured", "dots", velocity, force),
+    ]
+    if breaks:
+        level = np.array([b["direction"] * b["force_n"] for b in breaks])
+        top.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level, hidden=True))
+    below = (
+        Trace("noise, 95 %", "quiet", "band", velocity[order], -1.96 * spread[order], 1.96 * spread[order]),
+        Trace("measured - identified", "measured", "dots", velocity, residual),
+    )
+    panels = (Panel("friction force [N]", tuple(top), share=2.0), Panel("residual [N]", below))
+    said = (
+        f"{len(velocity)} windows at {number(np.abs(velocity).min())} to {number(np.abs(velocity).max())} m/s; "
+        f"residuals {number(result['map']['residual_rms_n'])} N rms."
+    )
+    return Chart("static-map", "Friction over velocity", said, "velocity [m/s]", panels, height=560)
