@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.noise import run_noise
-from pneumo_ros.identify.run import Run, check_position
+from pneumo_ros.identify.run import PARTS, Run, check_position
 from pneumo_ros.identify.smooth import noise_gain, smooth
 from pneumo_ros.plant import Model
 
@@ -44,7 +44,7 @@ def first_guess(model: Model, run: Run, at: Index) -> Array:
     guess = smoothed(run)
     frame = guess.frame[:, : 2 if model.force_driven else 4]
     rest = model.state()[frame.shape[1] :]
-    states, _ = model.follow(frame, run.held, rest, sample_time=run.sample_time)
+    states, _ = model.follow(frame, run.input, rest, sample_time=run.sample_time, parts=PARTS)
     chosen: Array = states[at]
     if "z" in model.states:
         _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], guess.acceleration[at])

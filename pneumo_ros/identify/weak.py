@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pneumo_ros.identify.bump import Bump
 from pneumo_ros.identify.guess import smoothed
 from pneumo_ros.identify.noise import noise_level, run_noise
-from pneumo_ros.identify.run import Run, check_position
+from pneumo_ros.identify.run import PARTS, Run, check_position
 from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
 
@@ -90,15 +90,9 @@ def _along(model: Model, run: Run) -> tuple[Array, Array]:
         if column < frame.shape[1]:
             frame[:, column] = signal
     rest = model.state()[frame.shape[1] :]
-    states, _ = model.follow(frame, run.held, rest, sample_time=run.sample_time)
-    return states, _claims(model, run, states)
-
-
-def _claims(model: Model, run: Run, states: Array) -> Array:
-    """Derivatives (n, states) at every sample; where the input steps, the mean of both sides, as integrals want."""
-    held = run.held
-    after, before = np.append(held, held[-1]), np.insert(held, 0, held[0])
-    return 0.5 * (model.derivatives(states, after, run.time) + model.derivatives(states, before, run.time))
+    states, mean = model.follow(frame, run.input, rest, sample_time=run.sample_time, parts=PARTS)
+    # the mean of the intervals on both sides of a sample: a sum over samples is then the integral, input steps and all
+    return states, 0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0))
 
 
 def _momentum(model: Model, run: Run, states: Array, claimed: Array, noise: dict[str, float]) -> Residual:

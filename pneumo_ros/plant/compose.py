@@ -49,7 +49,7 @@ class Composition:
 
 
 # names the generated module uses itself
-_WORDS = """x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts values np math LANES
+_WORDS = """x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts steps values np math LANES
 entry inline derivatives after_step observation step step_lanes run run_lanes follow rates observe"""
 _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 

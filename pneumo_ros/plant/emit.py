@@ -267,36 +267,34 @@ def _follow(resolver: "Resolver", states: list[str], rates: list[str], names: li
     def between(suffix: str, share: str) -> list[str]:
         return [f"{s}{suffix} = X[k, {i}] + {share} * (X[k + 1, {i}] - X[k, {i}])" for i, s in enumerate(measured)]
 
-    lines = ["t = t0 + (k * stride + s) * h", "half = 0.5 * h", *between("", "(s / stride)")]
-    lines += [_evaluate(states, rates, names, "", "t"), *between("_m", "((s + 0.5) / stride)")]
-    lines += [_half_step(s, rates) for s in own]
-    lines += [_evaluate(states, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / stride)")]
+    lines = ["U = voltage[k * parts + s // stride]", "t = t0 + (k * steps + s) * h", "half = 0.5 * h"]
+    lines += [*between("", "(s / steps)"), _evaluate(states, rates, names, "", "t")]
+    lines += [*between("_m", "((s + 0.5) / steps)"), *(_half_step(s, rates) for s in own)]
+    lines += [_evaluate(states, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / steps)")]
+    lines += [f"mean_{s} += d_{s}" for s in states]
     lines += [_whole_step(s, rates, "relaxation") for s in own]
     targets = ", ".join(s if s in own else "_" for s in states) + ","
     lines.append(f"{targets} = after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
     body = "\n".join("            " + line for line in lines)
     load = "\n".join(f"    {s} = X[0, {states.index(s)}]" for s in own)
-    restore = "\n".join(f"        {s} = X[k + 1, {i}]" for i, s in enumerate(measured))
+    clear = "\n".join(f"        mean_{s} = 0.0" for s in states)
     keep = "\n".join(f"        X[k + 1, {states.index(s)}] = {s}" for s in own)
-    call = f"derivatives({', '.join([*states, 'U', 't', *names])})"
-    store = "\n".join(f"        out[k + 1, {i}] = values[{i}]" for i in range(len(states)))
+    store = "\n".join(f"        out[k + 1, {i}] = mean_{s} / steps" for i, s in enumerate(states))
     return f'''@entry
-def follow(X, q, voltage, t0, h, stride, out):
+def follow(X, q, voltage, t0, h, stride, parts, out):
     """Advance the effects' own states along measured motion and pressures, interpolated between samples.
 
     X (samples, states): the frame's columns are given, the others are filled in from row 0 on; out (samples, states):
-    derivatives at every sample but the first, with voltage[k] held from sample k to k + 1.
+    mean derivatives over the interval that ends there, in which `parts` voltages are held for `stride` steps each.
     """
 {_unpack(names, "q", "{0}")}
 {load}
+    steps = stride * parts
     for k in range(X.shape[0] - 1):
-        U = voltage[k]
-        for s in range(stride):
+{clear}
+        for s in range(steps):
 {body}
-{restore}
 {keep}
-        t = t0 + (k + 1) * stride * h
-        values = {call}
 {store}'''
 
 

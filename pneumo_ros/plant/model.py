@@ -219,14 +219,21 @@ class Model:
         return run_lanes(self.kernel, x, q, held, begin, t0, h, stride, parts, count, threads)
 
     def follow(
-        self, measured: ArrayLike, voltage: ArrayLike, rest: ArrayLike, *, sample_time: float = 1e-3, step: float = STEP
+        self,
+        measured: ArrayLike,
+        voltage: ArrayLike,
+        rest: ArrayLike,
+        *,
+        sample_time: float = 1e-3,
+        step: float = STEP,
+        parts: int = 1,
     ) -> tuple[Array, Array]:
         """Drive the effects' own states along a measured motion; returns states, derivatives, both (samples, states).
 
-        measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven); voltage[k]
-        is held from sample k to k + 1; rest: values of the other states at sample 0. The derivatives are
-        what the equations claim at each sample: where they differ from the measurement, the equation fails. Row 0 of
-        the derivatives repeats row 1.
+        measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven);
+        voltage: `parts` of them are held one after another between two samples; rest: values of the other states at
+        sample 0. The derivatives are what the equations claim, as the mean over the interval that ends at each sample:
+        where they differ from the measurement, the equation fails. Row 0 of the derivatives repeats row 1.
         """
         given, tail = np.array(measured, dtype=float, ndmin=2), np.array(rest, dtype=float, ndmin=1)
         X = np.empty((len(given), len(self.states)))
@@ -235,8 +242,11 @@ class Model:
         X[:, : given.shape[1]] = given
         X[0, given.shape[1] :] = tail
         out = np.empty_like(X)
-        stride, h = substeps(sample_time, step)
-        self.kernel.follow(X, self.values, np.array(voltage, dtype=float), 0.0, h, stride, out)
+        held = np.array(voltage, dtype=float)
+        if _whole(len(held), parts) < len(X) - 1:
+            raise UsageError(f"{len(held)} voltages do not reach over {len(X)} samples")
+        stride, h = substeps(sample_time / parts, step)
+        self.kernel.follow(X, self.values, held, 0.0, h, stride, parts, out)
         out[0] = out[1] if len(out) > 1 else 0.0
         return X, out
 
