@@ -19,6 +19,7 @@ class Law(ABC):
     """
 
     gains: ClassVar[Mapping[str, Gain]] = {}
+    reads_pressures: ClassVar[bool] = False  # whether `step` uses the pressures of a measurement
 
     def __init_subclass__(cls) -> None:
         cls.gains = MappingProxyType({name: value for name, value in vars(cls).items() if isinstance(value, Gain)})

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from ros.probe import BEST_EFFORT, Probe, probe
 from ros.processes import Running, node, running
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.control import Measurement, Pid
@@ -170,3 +170,35 @@ def test_it_takes_its_dead_zone_from_a_machine_file_and_refuses_what_it_does_not
     with running(*node("controller", **{"pid.proportionl": 3.0}), cwd=tmp_path) as process:
         assert process.end(None) == 2
         assert "did you mean pid.proportional?" in process.said
+
+
+SPY = """
+import sys
+from pneumo_ros.control import Pid
+from pneumo_ros.ros.controller import main, settings
+
+
+class Spy(Pid):
+    reads_pressures = True
+
+    def step(self, reference, measurement):
+        return 1e-5 * (measurement.pressure_a or 0.0) - 1e-6 * (measurement.pressure_b or 0.0)
+
+
+settings.LAWS["pid"] = Spy
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_law_that_reads_pressures_gets_those_of_its_sample(tmp_path: Path) -> None:
+    given = ["--ros-args", "-r", "__ns:=/spied", "-p", "measurement_timeout:=10.0"]
+    with running("-c", SPY, *given, cwd=tmp_path) as process, probe("spied") as one:
+        plant = Plant(one)
+        pressures = [one.node.create_publisher(FluidPressure, f"chamber_{c}/pressure", BEST_EFFORT) for c in "ab"]
+        one.matched(*pressures)
+        time.sleep(0.3)
+        plant.want(0.1)
+        for publisher, value in zip(pressures, (3e5, 2e5), strict=True):
+            publisher.publish(FluidPressure(fluid_pressure=value))
+        assert plant.answer(0.0) == pytest.approx(2.8)
+        assert process.end() == 0

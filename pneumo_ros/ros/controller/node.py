@@ -60,7 +60,7 @@ class Controller(AxisNode):
     def _listen(self) -> None:
         self._reader = readers.JointReader(self._joint)
         self.create_subscription(JointState, JOINT_STATES, self._joint_states, SUBSCRIBE, raw=True)
-        for chamber, topic in (("a", PRESSURE_A), ("b", PRESSURE_B)):
+        for chamber, topic in (("a", PRESSURE_A), ("b", PRESSURE_B)) if self.loop.law.reads_pressures else ():
             self.create_subscription(FluidPressure, topic, partial(self._pressure, chamber), SUBSCRIBE, raw=True)
         self.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
         self.create_timer(CHECK, self._watch, clock=self.steady_clock)

@@ -1,4 +1,4 @@
-"""`ros2 run pneumo_ros axis`: simulator and controller in one process, the fastest lockstep.
+"""Simulator and controller in one process, the fastest lockstep.
 
 They are the same nodes with the same topics; in one process their messages need not wait for the operating system.
 """
@@ -32,7 +32,3 @@ def _nodes(effects_files: Sequence[str]) -> list[AxisNode]:
     simulator = Simulator(effects_files, lambda name: name in theirs and not name.startswith("dead_zone."))
     clock = simulator.simulated_clock  # a pause of the plant is no silence, and /clock would halve the speed
     return [simulator, Controller(lambda name: name in simulator.parameters, clock)]
-
-
-if __name__ == "__main__":
-    sys.exit(main())
