@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -47,7 +48,8 @@ def edges(variable: Array, count: int) -> Array:
 def bin_means(variable: Array, value: Array, cluster: Index, at: Array, fewest: int) -> Bins:
     """Means of `value` (n,) in bins of `variable` (n,) with edges `at`; bins of fewer than `fewest` are left out.
 
-    The interval is the cluster-robust one (Liang and Zeger 1986): deviations are summed within clusters first.
+    The interval is the cluster-robust one (Liang and Zeger 1986): deviations are summed within clusters first; Student's
+    factor for as many clusters as there are.
     """
     place = np.digitize(variable, at) - 1
     rows = []
@@ -69,7 +71,8 @@ def _mean(value: Array, cluster: Index) -> tuple[float, float]:
     if len(sums) < 2:
         return mean, np.nan
     correction = len(sums) / (len(sums) - 1.0)
-    return mean, float(1.96 * np.sqrt(correction * np.sum(sums**2)) / len(value))
+    deviation = float(np.sqrt(correction * np.sum(sums**2)) / len(value))
+    return mean, float(stdtrit(len(sums) - 1, 0.975)) * deviation
 
 
 def explained(variable: Array, value: Array, cluster: Index, at: Array) -> tuple[float, float]:

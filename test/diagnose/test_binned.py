@@ -12,10 +12,11 @@ def correlated(rng: np.random.Generator, blocks: int, size: int) -> tuple[np.nda
     return rng.normal(size=blocks)[cluster] + rng.normal(size=blocks * size), cluster
 
 
-def test_intervals_cover_although_neighbours_belong_together() -> None:
+@pytest.mark.parametrize("blocks", [3, 40])
+def test_intervals_cover_although_neighbours_belong_together(blocks: int) -> None:
     rng, covered = np.random.default_rng(0), []
     for _ in range(300):
-        value, cluster = correlated(rng, 40, 10)
+        value, cluster = correlated(rng, blocks, 10)
         bins = bin_means(np.zeros(len(value)), value, cluster, np.array([-1.0, 1.0]), 8)
         covered.append(bins.below[0] < 0.0 < bins.above[0])
     assert 0.90 <= np.mean(covered) <= 0.98  # independent ones would cover two thirds
