@@ -61,7 +61,7 @@ def started_wrong(model: Model) -> Model:
 def table(truth: Model, results: list[Identification]) -> str:
     """One row per parameter."""
     lines = [f"{'parameter':36s} {'truth':>12s} {'worst error':>12s} {'covered':>9s} {'undetermined':>13s}"]
-    for name in (*FRICTION, *COEFFICIENTS, *LIMITS, STIFFNESS):
+    for name in (*(n for n in FRICTION if n in truth.parameters), *COEFFICIENTS, *LIMITS, STIFFNESS):
         found = [r.parameters[name] for r in results]
         known = [f for f in found if f.interval is not None]
         worst = max((abs(f.value / truth[name] - 1.0) for f in known), default=float("nan"))

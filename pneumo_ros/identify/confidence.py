@@ -9,6 +9,7 @@ from scipy.stats import t as student
 Array = NDArray[np.float64]
 
 _FEW_GROUPS = 6
+_BLIND = 1e-10  # share of the largest eigenvalue: a direction with less information has none
 
 
 def central_jacobian(function: Callable[[Array], Array], x: Array) -> Array:
@@ -20,20 +21,32 @@ def central_jacobian(function: Callable[[Array], Array], x: Array) -> Array:
 def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequence[str]) -> tuple[Array, Array]:
     """Half widths (p,) of 95 % intervals and the correlation (p, p) of a weighted least-squares estimate.
 
-    residual (n,) is whitened, jacobian (n, p), weight (n,) the robust weights, groups (n,) the run of each residual.
+    residual (n,) is whitened, jacobian (n, p), weight (n,) the robust weights, groups (n,) the run of each residual,
+    empty for what is no measurement but was known before.
+    Infinite half widths, and NaN for correlations, belong to parameters that the residuals do not tell apart.
     The wider of two: independent errors of the residuals' own size (at least 1), and errors that are alike within a
     run (cluster-robust sandwich, Liang and Zeger 1986, with Student's t over the runs), from six runs on.
     """
     freedom = max(len(residual) - jacobian.shape[1], 1)
     variance = max(float(np.sum(weight * residual**2) / freedom), 1.0)
-    bread = np.linalg.pinv(jacobian.T @ (weight[:, None] * jacobian))
+    bread, seen = _inverse(jacobian.T @ (weight[:, None] * jacobian))
     half = student.ppf(0.975, freedom) * np.sqrt(variance * np.diag(bread))
-    names = sorted(set(groups))
+    names = sorted(set(groups) - {""})
     if len(names) >= max(_FEW_GROUPS, jacobian.shape[1] + 2):
         labels = np.array(groups)
         scores = np.stack([jacobian[labels == g].T @ (weight * residual)[labels == g] for g in names])
         meat = scores.T @ scores * (len(names) / (len(names) - 1.0))
         robust = np.sqrt(np.diag(bread @ meat @ bread))
         half = np.maximum(half, student.ppf(0.975, len(names) - jacobian.shape[1]) * robust)
-    sigma = np.sqrt(np.diag(bread))
-    return half, bread / np.outer(sigma, sigma)
+    sigma = np.where(seen, np.sqrt(np.diag(bread)), np.nan)
+    return np.where(seen, half, np.inf), bread / np.outer(sigma, sigma)
+
+
+def _inverse(normal: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Inverse (p, p) within what the data see, and whether they see each parameter (p,) or only sums with others."""
+    size = np.sqrt(np.diag(normal))
+    size[size == 0.0] = 1.0
+    value, vector = np.linalg.eigh(normal / np.outer(size, size))
+    known = value > _BLIND * value[-1]
+    seen = (np.abs(vector[:, ~known]) < 1e-3).all(axis=1)
+    return (vector[:, known] / value[known]) @ vector[:, known].T / np.outer(size, size), seen

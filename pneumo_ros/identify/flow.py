@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 COEFFICIENTS = ("arctan_flow.filling_coefficient", "arctan_flow.exhaust_coefficient")
 LIMITS = ("dead_zone.right_limit", "dead_zone.left_limit")
 _RELATIVE = 1e-4  # of a flow: what steadiness leaves of a window's mass balance at best
+_KNOWN = 0.05  # relative deviation of what was known before of the dead zone's limits: runs of one voltage do not show
+_LOOSE = 0.2  # relative half width of an interval beyond which a coefficient counts as not determined
+_F_SCALE = 3.0  # deviations: beyond, residuals count linearly
 
 
 @dataclass(frozen=True)
@@ -25,6 +28,8 @@ class FlowFit:
     values: dict[str, float]
     intervals: dict[str, tuple[float, float]]
     undetermined: dict[str, str]
+    correlation: Array  # (names, names)
+    names: tuple[str, ...]
 
 
 def measured_flow(model: Model, window: Window) -> tuple[float, float]:
@@ -57,38 +62,54 @@ def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
     used = [w for w in windows if w.used and w.velocity * w.input > 0.0]
     if "arctan_flow" not in model.effects or len(used) < 2 * len(names):
         text = f"{len(used)} steady stretches with an open valve are too few"
-        return FlowFit({}, {}, {name: text for name in COEFFICIENTS if name in model.parameters})
-    states = np.tile(model.state(), (len(used), 1))
-    for column, key in enumerate(("position", "velocity", "pressure_a", "pressure_b")):
-        states[:, column] = [getattr(w, key) for w in used]
-    held = np.array([w.input for w in used])
-    flows = np.array([measured_flow(model, w) for w in used])
-    spread = np.hypot([flow_noise(model, w) for w in used], _RELATIVE * np.abs(flows))
-    scale = np.array([model[name] for name in names])
+        unknown = {name: text for name in COEFFICIENTS if name in model.parameters}
+        return FlowFit({}, {}, unknown, np.empty((0, 0)), ())
+    problem = _FlowProblem(model, used, names)
+    x = least_squares(problem.residuals, np.ones(len(names)), bounds=(0.2, 5.0), loss="soft_l1", f_scale=_F_SCALE).x
+    return problem.result(np.asarray(x))
 
-    def residuals(x: Array) -> Array:
-        variant = model.with_parameters(dict(zip(names, (x * scale).tolist(), strict=True)))
-        seen = variant.outputs(states, held)
+
+class _FlowProblem:
+    """Least squares over factors of the parameters `names`, with what was known of the dead zone's limits."""
+
+    def __init__(self, model: Model, used: Sequence[Window], names: tuple[str, ...]) -> None:
+        self.model, self.names = model, names
+        self.states = np.tile(model.state(), (len(used), 1))
+        for column, key in enumerate(("position", "velocity", "pressure_a", "pressure_b")):
+            self.states[:, column] = [getattr(w, key) for w in used]
+        self.held = np.array([w.input for w in used])
+        self.flows = np.array([measured_flow(model, w) for w in used])
+        self.spread = np.hypot([flow_noise(model, w) for w in used], _RELATIVE * np.abs(self.flows))
+        self.scale = np.array([model[name] for name in names])
+        self.known = np.array([name in LIMITS for name in names], dtype=bool)
+        self.groups = [*(w.run for w in used for _ in "ab"), *("" for _ in range(int(self.known.sum())))]
+
+    def residuals(self, x: Array) -> Array:
+        """Whitened: model minus measured flow into a and b of every window, then the limits about what was known."""
+        values = dict(zip(self.names, (x * self.scale).tolist(), strict=True))
+        seen = self.model.with_parameters(values).outputs(self.states, self.held)
         claimed = np.stack([seen["port_flow_a"], seen["port_flow_b"]], axis=1)
-        return np.asarray(((claimed - flows) / spread).ravel())
+        flows = ((claimed - self.flows) / self.spread).ravel()
+        return np.concatenate([flows, (x - 1.0)[self.known] / _KNOWN])
 
-    solution = least_squares(residuals, np.ones(len(names)), bounds=(0.2, 5.0), loss="soft_l1", f_scale=3.0)
-    groups = [w.run for w in used for _ in "ab"]
-    return _result(names, solution.x, scale, residuals(solution.x), central_jacobian(residuals, solution.x), groups)
+    def result(self, x: Array) -> FlowFit:
+        """Values and intervals at the solution x; limits that gained little on what was known are undetermined."""
+        residual = self.residuals(x)
+        weight = 1.0 / (1.0 + (residual / _F_SCALE) ** 2)
+        half, correlation = half_widths(residual, central_jacobian(self.residuals, x), weight, self.groups)
+        loose = half > np.where(self.known, _KNOWN, _LOOSE * x)  # of a limit: half of what 95 % was before
+        values = dict(zip(self.names, (x * self.scale).tolist(), strict=True))
+        unknown = {name: self._reason(name) for name, bad in zip(self.names, loose, strict=True) if bad}
+        kept = {name: value for name, value in values.items() if name not in unknown}
+        wide = dict(zip(self.names, (half * self.scale).tolist(), strict=True))
+        intervals = {name: (value - wide[name], value + wide[name]) for name, value in kept.items()}
+        return FlowFit(kept, intervals, unknown, correlation, self.names)
 
-
-def _result(
-    names: tuple[str, ...], x: Array, scale: Array, residual: Array, jacobian: Array, groups: list[str]
-) -> FlowFit:
-    weight = 1.0 / (1.0 + (residual / 3.0) ** 2)
-    half, _ = half_widths(residual, jacobian, weight, groups)
-    half *= scale
-    values = dict(zip(names, (x * scale).tolist(), strict=True))
-    unknown = {
-        n: f"the interval is as wide as +- {h:.3g} about {values[n]:.3g}"
-        for n, h in zip(names, half, strict=True)
-        if h > 0.2 * abs(values[n])
-    }
-    kept = {n: v for n, v in values.items() if n not in unknown}
-    intervals = {n: (values[n] - float(h), values[n] + float(h)) for n, h in zip(names, half, strict=True) if n in kept}
-    return FlowFit(kept, intervals, unknown)
+    def _reason(self, name: str) -> str:
+        if name in LIMITS:
+            sign = 1.0 if name == LIMITS[0] else -1.0
+            side = "positive" if sign > 0.0 else "negative"
+            if not (sign * self.held > 0.0).any():
+                return f"needs runs at {side} voltages"
+            return f"needs runs at several small {side} voltages, the smallest just beyond the dead zone"
+        return "needs runs at more voltages, fast ones among them"

@@ -35,14 +35,16 @@ def fit_presliding(model: Model, runs: Sequence[Run], breakaways: Sequence[Break
     stiffness = _pooled(slopes)
     if stiffness:
         values[STIFFNESS], intervals[STIFFNESS] = stiffness
-        remarks[STIFFNESS] = f"measured: presliding before {len(slopes)} breakaways"
+        remarks[STIFFNESS] = f"presliding before {len(slopes)} breakaway{'s' * (len(slopes) > 1)}"
     else:
         values[STIFFNESS] = model["lugre_friction.coulomb_friction"] / _DEFLECTION
-        remarks[STIFFNESS] = "not measured: no presliding above the noise; Eq. 15, F_c / 50 um, the softest it allows"
+        remarks[STIFFNESS] = (
+            "not measured, no presliding shows above the noise; by Eq. 15 F_c / 50 um, the softest it allows"
+        )
     bound = passive_damping(model)
     values[DAMPING] = min(model[DAMPING], bound)
-    kept = "kept" if values[DAMPING] == model[DAMPING] else "lowered to it"
-    remarks[DAMPING] = f"not measured: {kept}; passive up to {bound:.0f} N s/m (Eq. 16 corrected for quadratic drag)"
+    kept = "kept as it was" if values[DAMPING] == model[DAMPING] else "lowered to it"
+    remarks[DAMPING] = f"not measured, {kept}; passive up to {bound:.0f} N s/m (Eq. 16 corrected for quadratic drag)"
     return Presliding(values, intervals, remarks)
 
 

@@ -253,7 +253,7 @@ class _Problem:
         shifts = _bootstrap(reduced, gradient - gradient.mean(0), len(theta))
         deviation = np.maximum(shifts.std(0), 1e-12) * self.prior * _small_sample(int(np.sum(self.active)))
         covariance = np.atleast_2d(np.cov(shifts.T))
-        scale = np.sqrt(np.diag(covariance))
+        scale = np.where(np.diag(covariance) > 0.0, np.sqrt(np.diag(covariance)), np.nan)
         # a direction that only the prior holds is not determined by the data
         information = np.diag(np.linalg.inv(reduced.sum(0) + 1e-9 * np.eye(len(theta))))
         deviation = np.where(information > 1e6, np.inf, deviation)

@@ -40,7 +40,8 @@ class Window:
     friction_noise: float  # [N], standard deviation by sensor noise
     velocity_noise: float  # [m/s], likewise
     slope_noise: float  # [Pa/s], likewise, of either chamber; NaN when force-driven
-    refused: str  # empty when used
+    reason: str  # why it is refused, the same words for every window refused for it; empty when used
+    refused: str  # the same with its figures
 
     @property
     def used(self) -> bool:
@@ -88,7 +89,8 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
             friction_noise=noise[0],
             velocity_noise=noise[1],
             slope_noise=noise[2],
-            refused=refused[i],
+            reason=refused[i][0],
+            refused=refused[i][1],
         )
         for i, s in enumerate(starts)
     ]
@@ -133,20 +135,24 @@ def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
 def _reasons(
     model: Model, run: Run, rows: NDArray[np.int64], position: Array, velocity: Array, speed_change: Array,
     force_change: Array, force: Array,
-) -> list[str]:  # fmt: skip
+) -> list[tuple[str, str]]:  # fmt: skip
+    """Reason, and reason with figures, of each window; empty for those to be used."""
     span = (rows.shape[1] - 1) * run.sample_time
     speed, edge = np.abs(velocity), 0.5 * model["piston.stroke"] - _EDGE
-    tests: tuple[tuple[Any, Callable[[int], str]], ...] = (
-        (~run.measured[rows].all(axis=1), lambda i: "a gap in the recording"),
-        (np.abs(run.position[rows]).max(axis=1) > edge, lambda i: "at the end of the stroke"),
-        (speed * span < TRAVEL, lambda i: f"the piston rests or creeps ({1e3 * speed[i]:.2f} mm/s)"),
+    tests: tuple[tuple[str, Any, Callable[[int], str]], ...] = (
+        ("a gap in the recording", ~run.measured[rows].all(axis=1), lambda i: ""),
+        ("at the end of the stroke", np.abs(run.position[rows]).max(axis=1) > edge, lambda i: ""),
+        ("the piston rests or creeps", speed * span < TRAVEL, lambda i: f" ({1e3 * speed[i]:.2f} mm/s)"),
         (
+            "the velocity changes",
             np.abs(speed_change) > SPEED_CHANGE * speed,
-            lambda i: f"velocity changes by {100 * abs(speed_change[i]) / speed[i]:.0f} %",
+            lambda i: f" by {100 * abs(speed_change[i]) / speed[i]:.0f} % in {span:.2g} s",
         ),
         (
+            "the pressures still change the force",
             np.abs(force_change) > FORCE_CHANGE * np.abs(force),
-            lambda i: f"pressures still move the force by {abs(force_change[i]):.1f} N",
+            lambda i: f" by {abs(force_change[i]):.1f} N in {span:.2g} s",
         ),
     )
-    return [next((words(i) for bad, words in tests if bad[i]), "") for i in range(len(rows))]
+    found = (((why, why + words(i)) for why, bad, words in tests if bad[i]) for i in range(len(rows)))
+    return [next(one, ("", "")) for one in found]

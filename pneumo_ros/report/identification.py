@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def identification_report(result: dict[str, Any], model: "Model", origin: dict[str, Any]) -> Report:
     """Everything an identification has to show; `model` is the identified one."""
     unknown = result["undetermined"]
-    fits = result["map"]["explained"]
+    fits = result["map"]["fits"]
     verdict = "Everything asked for is determined." if not unknown else f"Not determined: {', '.join(unknown)}."
     if not fits:
         verdict += " The static map does not fit."
@@ -58,7 +58,7 @@ def found_section(result: dict[str, Any]) -> Section:
         items = [tag("li", f"{' and '.join(pair['between'])}: {pair['r']:+.2f}") for pair in together]
         parts.append(tag("p", "Known together rather than one by one (correlation):"))
         parts.append(tag("ul", items))
-    return Section("parameters-found", "Parameters", Html("".join(parts)))
+    return Section("identified", "Identified", Html("".join(parts)))
 
 
 def windows_section(result: dict[str, Any]) -> Section:

@@ -25,7 +25,7 @@ def static_map_section(result: dict[str, Any]) -> Section:
 def _chart(result: dict[str, Any]) -> Chart:
     points, curve, breaks = result["map"]["points"], result["map"]["curve"], result["breakaways"]
     velocity, force, residual, spread = (
-        np.array(points[key], dtype=float) for key in ("velocity", "force", "residual", "force_std")
+        np.array(points[key], dtype=float) for key in ("velocity", "force", "residual", "residual_std")
     )
     at, model, before = (np.array(curve[key], dtype=float) for key in ("velocity", "friction", "before"))
     order = np.argsort(velocity)
@@ -36,7 +36,7 @@ def _chart(result: dict[str, Any]) -> Chart:
     ]
     if breaks:
         level = np.array([b["direction"] * b["force_n"] for b in breaks])
-        top.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level, hidden=True))
+        top.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level))
     below = (
         Trace("noise, 95 %", "quiet", "band", velocity[order], -1.96 * spread[order], 1.96 * spread[order]),
         Trace("measured - identified", "measured", "dots", velocity, residual),

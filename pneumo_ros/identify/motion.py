@@ -1,0 +1,93 @@
+"""Friction from how a piston moves off: static friction and Stribeck velocity, which no steady motion shows well."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.identify.breakaway import Breakaway
+from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS
+from pneumo_ros.identify.friction_map import LOOSE
+from pneumo_ros.identify.presliding import STIFFNESS
+from pneumo_ros.identify.refit import Estimate, refit_segments
+from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.segments import cut_at
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+BEFORE, AFTER = 0.7, 0.3  # s around a breakaway
+RAMP = 15.0  # N/s: under a slower ramp the moment of breakaway hangs on hundredths of a newton
+FEW, MOST = 4, 20  # breakaways: fewer say too little, more say nothing new
+_SURE, _KNOWN = 0.01, 0.05  # relative deviations of valve parameters, identified or as given
+
+
+@dataclass(frozen=True)
+class MotionFit:
+    """What the motion after breakaways determines: estimates by dotted name, their correlation, how many there were."""
+
+    estimates: dict[str, Estimate]
+    correlation: Array  # (names, names)
+    names: tuple[str, ...]
+    breakaways: int
+
+
+def fit_motion(
+    model: Model,
+    runs: Sequence[Run],
+    breakaways: Sequence[Breakaway],
+    free: Mapping[str, float],
+    sure: Sequence[str],
+    progress: Callable[[float, str], None],
+) -> MotionFit | None:
+    """Refit the friction parameters `free` (prior deviation by dotted name) to a second around each breakaway.
+
+    Valve and bristles move along within a per cent where they are `sure`, else within five. None when fewer than four
+    pistons broke away under a force that rises fast enough, or nothing is free.
+    """
+    chosen = _one_rate(runs, breakaways)
+    starts = _thinned([_starts(run, breakaways) for run in chosen])
+    count = sum(len(s) for s in starts)
+    if not free or count < FEW:
+        return None
+    beside = [name for name in (*COEFFICIENTS, *LIMITS, STIFFNESS) if name in model.parameters and name not in free]
+    wide = {name: (_SURE if name in sure else _KNOWN) * abs(model[name]) for name in beside} | dict(free)
+    segments = cut_at(model, chosen, starts, round((BEFORE + AFTER) / chosen[0].sample_time))
+    fit = refit_segments(model, segments, [*free, *beside], wide, progress=progress)
+    good = {name: fit.estimates[name] for name in free if _good(fit.estimates[name])}
+    return MotionFit(good, fit.correlation, (*free, *beside), count)
+
+
+def _good(estimate: Estimate) -> bool:
+    return estimate.determined and bool(estimate.high - estimate.low < 2.0 * LOOSE * abs(estimate.value))
+
+
+def _starts(run: Run, breakaways: Sequence[Breakaway]) -> Index:
+    before, after = round(BEFORE / run.sample_time), round(AFTER / run.sample_time)
+    rows = [
+        max(b.index - before, 0)
+        for b in breakaways
+        if b.run == run.name and abs(b.ramp) > RAMP and max(b.index, before) + after < len(run)
+    ]
+    return np.array(rows, dtype=np.int64)
+
+
+def _one_rate(runs: Sequence[Run], breakaways: Sequence[Breakaway]) -> list[Run]:
+    """The runs of that sample time which has most breakaways: segments are simulated side by side."""
+    alike: list[list[Run]] = []
+    for run in runs:
+        group = next((g for g in alike if abs(run.sample_time / g[0].sample_time - 1.0) < 1e-3), None)
+        if group is None:
+            alike.append(group := [])
+        group.append(run)
+    return max(alike, key=lambda group: sum(len(_starts(run, breakaways)) for run in group))
+
+
+def _thinned(starts: Sequence[Index]) -> list[Index]:
+    """At most `MOST` of all, spread evenly."""
+    total = sum(len(s) for s in starts)
+    kept = np.unique(np.linspace(0, total - 1, min(total, MOST)).round().astype(int))
+    bounds = np.cumsum([0, *(len(s) for s in starts)])
+    return [s[kept[(kept >= a) & (kept < a + len(s))] - a] for s, a in zip(starts, bounds[:-1], strict=True)]

@@ -1,0 +1,109 @@
+"""An identification as plain data: the JSON of `pneumo identify`, from which text, report and node speak."""
+
+from collections import Counter
+from collections.abc import Sequence
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from pneumo_ros.identify.campaign import Identification
+from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.static_map import sliding_friction
+from pneumo_ros.identify.steady import WINDOW, Window
+
+STRONG = 0.9  # correlation beyond which two parameters are said to be known together rather than one by one
+MISFIT = 3.0  # residuals over noise beyond which noise does not explain them
+REPEATS = 0.01  # of the median force: rigs repeat their friction that well, though seldom to the noise of the sensors
+_CURVE = 60  # points of the drawn curve in each direction
+
+
+def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
+    """Everything found in the `runs`, with the evidence; SI units. NaN stands for what there is not."""
+    return {
+        "schema_version": 1,
+        "model": found.model.name,
+        "effects": list(found.model.effects),
+        "parameters": {name: _parameter(found, name) for name in found.parameters},
+        "undetermined": found.undetermined,
+        "correlations": [
+            {"between": list(pair), "r": r, "strong": bool(abs(r) > STRONG)} for pair, r in found.correlations.items()
+        ],
+        "map": {"points": _points(found), "curve": _curve(found), **_fit_quality(found), "window_s": WINDOW},
+        "runs": [_run(run, [w for w in found.windows if w.run == run.name]) for run in runs],
+        "refused": [
+            {"run": w.run, "start_s": w.start, "stop_s": w.stop, "input": w.input, "reason": w.reason,
+             "detail": w.refused}
+            for w in found.windows if not w.used
+        ],
+        "breakaways": [
+            {"run": b.run, "time_s": b.time, "direction": b.direction, "force_n": b.force, "spread_n": b.spread,
+             "ramp_n_per_s": b.ramp, "rest_s": b.rest}
+            for b in found.breakaways
+        ],
+    }  # fmt: skip
+
+
+def _fit_quality(found: Identification) -> dict[str, Any]:
+    """How far the points are from the fitted curve."""
+    rms = float(np.sqrt(np.mean(found.map_fit.residuals**2)))
+    share = rms / float(np.median([abs(p.force) for p in found.points]))
+    ratio = found.map_fit.ratio
+    return {
+        "residual_rms_n": rms, "share_of_force": share, "ratio_to_noise": ratio,
+        "explained_by_noise": bool(ratio < MISFIT), "fits": bool(ratio < MISFIT or share < REPEATS),
+    }  # fmt: skip
+
+
+def _parameter(found: Identification, name: str) -> dict[str, Any]:
+    one = found.parameters[name]
+    low, high = one.interval or (None, None)
+    return {
+        "before": one.before, "value": one.value, "low": low, "high": high, "unit": one.unit,
+        "meaning": found.model.specification(name).meaning, "determined": one.interval is not None,
+        "source": one.remark,
+    }  # fmt: skip
+
+
+def _points(found: Identification) -> dict[str, list[Any]]:
+    used = [w for w in found.windows if w.used]
+    return {
+        "run": [w.run for w in used], "start_s": [w.start for w in used], "input": [w.input for w in used],
+        "velocity": [w.velocity for w in used], "velocity_std": [w.velocity_noise for w in used],
+        "force": [w.friction for w in used], "force_std": [w.friction_noise for w in used],
+        "residual": found.map_fit.residuals.tolist(), "residual_std": found.map_fit.spread.tolist(),
+    }  # fmt: skip
+
+
+def _curve(found: Identification) -> dict[str, list[float]]:
+    """Friction at constant velocity, of the identified model and of the one before; NaN at rest breaks the curves."""
+    velocity = np.array([p.velocity for p in found.points])
+    slowest = 0.1 * min(model["lugre_friction.stribeck_velocity"] for model in (found.model, found.before))
+    reach = [1.05 * max(side.max(initial=0.0), 2.0 * slowest) for side in (-velocity, velocity)]
+    left, right = (np.geomspace(min(slowest, 0.5 * end), end, _CURVE) for end in reach)
+    at = np.concatenate([-left[::-1], right])
+    curve = {
+        "velocity": at,
+        "friction": sliding_friction(found.model, at),
+        "before": sliding_friction(found.before, at),
+    }
+    return {name: np.insert(values, _CURVE, np.nan).tolist() for name, values in curve.items()}
+
+
+def _run(run: Run, windows: Sequence[Window]) -> dict[str, Any]:
+    """What became of one run: its used stretches, and how many windows were refused for what."""
+    return {
+        "name": run.name, "duration_s": float(run.time[-1]), "sample_time_s": run.sample_time,
+        "windows": len(windows), "used": sum(w.used for w in windows),
+        "stretches": [_stretch(list(part)) for used, part in groupby(windows, lambda w: w.used) if used],
+        "refused": dict(Counter(w.reason for w in windows if not w.used).most_common()),
+    }  # fmt: skip
+
+
+def _stretch(windows: Sequence[Window]) -> dict[str, Any]:
+    """Used windows one after another."""
+    return {
+        "start_s": windows[0].start, "stop_s": windows[-1].stop, "input": windows[0].input, "windows": len(windows),
+        "velocity": float(np.mean([w.velocity for w in windows])),
+        "force": float(np.mean([w.friction for w in windows])),
+    }  # fmt: skip
