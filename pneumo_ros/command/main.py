@@ -13,7 +13,13 @@ from pneumo_ros.environment import LIBRARIES, library_advice
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.nearest import unknown_name
 
-VERBS = ("demo", "simulate", "compare", "effects")  # in the order help lists them; each is a module beside this one
+VERBS = (
+    "demo",
+    "simulate",
+    "identify",
+    "compare",
+    "effects",
+)  # in the order help lists them; each is a module beside this one
 
 EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong usage, 3 unreadable or unfit data,
 4 numerical failure, 130 interrupted"""

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from pneumo_ros.files import check_new_folder, check_writable, whole_folder, wri
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison
     from pneumo_ros.plant import Model
+    from pneumo_ros.report.chart import Report
 
 
 def add_report(parser: argparse.ArgumentParser) -> None:
@@ -32,14 +34,22 @@ class ReportJob:
     effects: tuple[str, ...]
 
     def write(self, console: Console, comparison: "Comparison", result: dict[str, Any], model: "Model") -> None:
-        """Write what was asked for."""
-        if self.page is None and self.figures is None:
-            return
+        """Write what was asked for of a comparison."""
         from pneumo_ros.report.comparison import comparison_report
+
+        self.publish(console, lambda origin: comparison_report(result, comparison, model, origin))
+
+    def origin(self) -> dict[str, Any]:
+        """JSON: the files with their hashes, the versions, the command line and the date."""
         from pneumo_ros.report.provenance import provenance
 
-        origin = provenance(self.bags, self.machine, sys.argv[1:], self.effects)
-        report = comparison_report(result, comparison, model, origin)
+        return provenance(self.bags, self.machine, sys.argv[1:], self.effects)
+
+    def publish(self, console: Console, make: "Callable[[dict[str, Any]], Report]") -> None:
+        """Write what was asked for of the report that `make` makes of its origin."""
+        if self.page is None and self.figures is None:
+            return
+        report = make(self.origin())
         if self.page is not None:
             from pneumo_ros.report.page import page_html
 

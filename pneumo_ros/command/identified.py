@@ -1,0 +1,149 @@
+"""What `pneumo identify` found, as text: the table, what is not determined, and which stretches it rests on."""
+
+import math
+import re
+from typing import Any
+
+from pneumo_ros.command.console import columns
+from pneumo_ros.diagnose.wording import number
+
+_SHOWN_STRETCHES = 4  # of a run; the others are counted
+
+
+def text(result: dict[str, Any], verbose: bool) -> str:
+    """The whole answer; `result` is the verb's JSON."""
+    parts = [
+        headline(result), parameters(result), "\n".join(sentences(result)), directions(result), stretches(result),
+        refusals(result) if verbose else "",
+    ]  # fmt: skip
+    return "\n\n".join(part for part in parts if part)
+
+
+def headline(result: dict[str, Any]) -> str:
+    """What the identification rests on, and the noise of the method."""
+    points, runs = result["map"]["points"], result["runs"]
+    windows, used = sum(run["windows"] for run in runs), len(points["velocity"])
+    span = result["map"]["window_s"]
+    speed, force = (sorted(points[key])[used // 2] for key in ("velocity_std", "force_std"))
+    return (
+        f"{used} of {windows} windows of {span:g} s in {count(len(runs), 'run')} are steady; "
+        f"{count(len(result['breakaways']), 'breakaway')}.\n"
+        f"Velocities are slopes of the position over {span:g} s; of the sensors' noise they keep "
+        f"{number(1e6 * speed, 2)} um/s, the forces {number(force, 2)} N (medians)."
+    )
+
+
+def parameters(result: dict[str, Any]) -> str:
+    """The table: before, value, interval, unit, where from."""
+    rows = [("", "before", "value", "95 % interval", "unit", "from")]
+    for name, one in result["parameters"].items():
+        value, interval = _interval(one) if one["determined"] else (number(one["value"], 5), "-")
+        source = one["source"] if one["determined"] else re.split("[:,]", one["source"])[0]
+        rows.append((name, number(one["before"], 5), value, interval, one["unit"], source))
+    return columns(rows, right=(1, 2))
+
+
+def _interval(one: dict[str, Any]) -> tuple[str, str]:
+    """Value and interval, to two figures of the interval's half width."""
+    half = max(0.5 * (one["high"] - one["low"]), 1e-12 * abs(one["value"]))
+    size = max(abs(one["value"]), half)
+    digits = min(max(math.floor(math.log10(size)) - math.floor(math.log10(half)) + 2, 2), 9)
+    return number(one["value"], digits), f"{number(one['low'], digits)} to {number(one['high'], digits)}"
+
+
+def sentences(result: dict[str, Any]) -> list[str]:
+    """What is not determined, what is known only together, and whether the map has the shape of the model."""
+    said = [
+        f"Not determined: {name}, which keeps {number(result['parameters'][name]['value'], 5)} "
+        f"{result['parameters'][name]['unit']}: {why}."
+        for name, why in result["undetermined"].items()
+    ]
+    for name, one in result["parameters"].items():
+        if not one["determined"] and name not in result["undetermined"]:
+            said.append(f"{name}: {one['source']}.")
+    for pair in result["correlations"]:
+        if pair["strong"]:
+            first, second = pair["between"]
+            together = "together" if pair["r"] > 0.0 else "against each other"
+            said.append(
+                f"{first} and {second} are hard to tell apart (correlation {pair['r']:+.2f}): "
+                f"each is known within its interval, and their errors go {together}."
+            )
+    return [*said, map_sentence(result["map"])]
+
+
+def map_sentence(found: dict[str, Any]) -> str:
+    """Whether noise explains what the static map leaves."""
+    share, ratio = number(100.0 * found["share_of_force"], 2), number(found["ratio_to_noise"], 2)
+    size = f"{number(found['residual_rms_n'])} N rms, {share} % of the force and {ratio} x the noise"
+    if found["explained_by_noise"]:
+        return f"The static map fits: residuals are {size}."
+    if found["fits"]:
+        return (
+            f"The static map fits roughly: residuals are {size}. Friction that does not repeat, or an effect that the "
+            "machine file lacks, makes the difference, and the intervals cover only the first; see: pneumo compare"
+        )
+    return (
+        f"The static map does NOT fit: residuals are {size}. The friction of this machine has a shape that these "
+        "parameters cannot give it, and the intervals do not cover that; see: pneumo compare"
+    )
+
+
+def directions(result: dict[str, Any]) -> str:
+    """Both directions side by side, and whether they differ."""
+    if "directions" not in result:
+        return ""
+    found = result["directions"]
+    sides = {name: found[name] for name in ("extending", "retracting")}
+    names = list(dict.fromkeys(n for side in sides.values() for n in (*side["parameters"], *side["undetermined"])))
+    rows = [("per direction", *sides, "unit", "")]
+    for name in names:
+        cells = ["{} ({})".format(*_interval(s["parameters"][name])) if name in s["parameters"] else "not determined"
+                 for s in sides.values()]  # fmt: skip
+        unit = next((s["parameters"][name]["unit"] for s in sides.values() if name in s["parameters"]), "")
+        rows.append((name, *cells, unit, "DIFFER" if name in found["differ"] else ""))
+    said = [f"{name.capitalize()}: {side['problem']}." for name, side in sides.items() if "problem" in side]
+    return "\n".join([columns(rows), *said, _difference(found)])
+
+
+def _difference(found: dict[str, Any]) -> str:
+    if not found["compared"]:
+        return "The directions cannot be compared: no parameter is determined in both."
+    if found["differ"]:
+        return f"The directions differ beyond their intervals in: {', '.join(found['differ'])}."
+    return f"The directions do not differ beyond their intervals in: {', '.join(found['compared'])}."
+
+
+def stretches(result: dict[str, Any]) -> str:
+    """A line for each run: steady stretches, and reasons of refusal."""
+    rows = [("run", "steady", "from - to [s]", "speed [mm/s]", "refused windows")]
+    for run in result["runs"]:
+        parts = run["stretches"]
+        shown = [f"{p['start_s']:.2f} - {p['stop_s']:.2f}" for p in parts[:_SHOWN_STRETCHES]]
+        more = [f"{len(parts) - _SHOWN_STRETCHES} more"] if len(parts) > _SHOWN_STRETCHES else []
+        speeds = [1e3 * p["velocity"] for p in parts]
+        span = (
+            f"{min(speeds):.1f}" + (f" .. {max(speeds):.1f}" if max(speeds) - min(speeds) > 0.05 else "")
+            if parts
+            else "-"
+        )
+        why = ", ".join(f"{number} {reason}" for reason, number in run["refused"].items()) or "-"
+        if not run["windows"]:
+            why = "no constant input for as long as a window"
+        rows.append((run["name"], f"{run['used']} of {run['windows']}", ", ".join(shown + more) or "-", span, why))
+    return columns(rows)
+
+
+def refusals(result: dict[str, Any]) -> str:
+    """Every refused window."""
+    rows = [("refused in run", "from - to [s]", "at", "why")]
+    rows += [
+        (one["run"], f"{one['start_s']:.2f} - {one['stop_s']:.2f}", f"{one['input']:+.4g}", one["detail"])
+        for one in result["refused"]
+    ]
+    return columns(rows) if len(rows) > 1 else "No window is refused."
+
+
+def count(number: int, thing: str) -> str:
+    """'1 run', '3 runs'."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")

@@ -1,0 +1,89 @@
+"""Identify friction and flow coefficients from constant-voltage runs, with intervals, and write the machine file.
+
+Stretches of constant velocity and constant pressures are found in the recordings, of whatever length they are. There
+the pressures give the friction force: the static map, from which Coulomb friction and drag follow. Static friction and
+Stribeck velocity follow from the force at which the piston breaks away and from how it moves off, the flow coefficients
+from the mass balance, the bristle stiffness from presliding. What the recordings do not show keeps its value, and a
+sentence says so; the exit code is then 1. A folder of recordings stands for all in it.
+"""
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.console import Console, plain
+from pneumo_ros.command.identified import text
+from pneumo_ros.command.recordings import expanded, read_expanded
+from pneumo_ros.command.reporting import add_report, prepare_report
+from pneumo_ros.errors import UsageError
+from pneumo_ros.files import check_writable
+
+if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
+
+ADDABLE = {"viscous": "viscous_friction", "stribeck_exponent": "stribeck_shape"}  # option -> effect
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """BAG..., --out, what to fit besides, and the common options."""
+    parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings, or folders of recordings")
+    parser.add_argument("--out", metavar="MODEL", help="write the identified machine file")
+    parser.add_argument("--overwrite", action="store_true", help="--out may replace a file")
+    parser.add_argument("--viscous", action="store_true", help="add viscous friction and fit its coefficient sigma_2")
+    parser.add_argument("--stribeck-exponent", action="store_true", help="add the exponent of the Stribeck curve")
+    parser.add_argument(
+        "--per-direction", action="store_true", help="fit the static map of each direction too, side by side"
+    )
+    parser.add_argument("--verbose", action="store_true", help="list every stretch that is refused, and why")
+    parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
+    add_model(parser)
+    add_report(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Read, identify, print, write."""
+    from pneumo_ros.identify.campaign import FRICTION, identify
+    from pneumo_ros.identify.directions import by_direction
+    from pneumo_ros.identify.summary import summary
+    from pneumo_ros.plant import save_model
+    from pneumo_ros.report.identification import identification_report
+
+    _check_out(options)
+    paths = expanded(options.bags, console)
+    options.bags = list(paths)
+    report = prepare_report(options)
+    model = _with_added(chosen_model(options), options)
+    runs, passed = read_expanded(paths, options.namespace, console, model.force_driven)
+    with console.progress("Identifying") as progress:
+        found = identify(model, runs, progress=lambda share, _: progress(share))
+    result: dict[str, Any] = summary(found, runs)
+    if options.per_direction:
+        result["directions"] = by_direction(found, [n for n in FRICTION if n in model.parameters])
+    result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
+    console.say(text(result, options.verbose))
+    if options.out:
+        save_model(found.model, options.out, overwrite=options.overwrite)
+        console.note(f"Machine file written to {options.out}; see also: pneumo compare BAG... --model {options.out}")
+    console.json(result)
+    report.publish(console, lambda origin: identification_report(result, found.model, origin))
+    return 1 if found.undetermined else 0
+
+
+def _check_out(options: argparse.Namespace) -> None:
+    if options.out is None:
+        if options.overwrite:
+            raise UsageError("--overwrite goes with --out MODEL")
+        return
+    if check_writable(options.out).exists() and not options.overwrite:
+        raise UsageError(f"{options.out} exists; name another file, or add --overwrite")
+
+
+def _with_added(model: "Model", options: argparse.Namespace) -> "Model":
+    """The model with the effects that options add, right behind LuGre friction."""
+    wanted = [effect for option, effect in ADDABLE.items() if getattr(options, option)]
+    added = [effect for effect in wanted if effect not in model.effects]
+    if not added or "lugre_friction" not in model.effects:
+        return model
+    at = model.effects.index("lugre_friction") + 1
+    return model.with_effects([*model.effects[:at], *added, *model.effects[at:]])

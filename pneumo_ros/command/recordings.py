@@ -1,0 +1,88 @@
+"""Recordings named on the command line: folders of them expanded, what cannot be read said, names kept apart."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pneumo_ros.command.console import Console
+from pneumo_ros.errors import DataError
+
+if TYPE_CHECKING:
+    from pneumo_ros.identify.run import Run
+
+_FILES = (".mcap", ".db3")
+
+
+def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
+    """The recordings named, in order, and whether each came out of a folder of recordings.
+
+    What is named twice is taken once. Raises DataError for a folder that holds none.
+    """
+    found: dict[str, bool] = {}
+    seen: set[Path] = set()
+    for name in named:
+        inside = _inside(Path(name))
+        for path in inside or [Path(name)]:
+            if path.resolve() in seen:
+                console.note(f"{path} is named twice and taken once")
+                continue
+            seen.add(path.resolve())
+            found[str(path)] = bool(inside)
+    return found
+
+
+def _inside(folder: Path) -> list[Path]:
+    """The recordings in a folder that is no recording itself, by name."""
+    if not folder.is_dir() or (folder / "metadata.yaml").exists():
+        return []
+    entries = sorted(folder.iterdir())
+    folders = [entry for entry in entries if entry.is_dir() and _holds_files(entry)]
+    if not folders:  # one recording whose recorder was killed, or nothing; reading tells
+        return []
+    return sorted([*folders, *(entry for entry in entries if entry.suffix in _FILES)])
+
+
+def _holds_files(folder: Path) -> bool:
+    return (folder / "metadata.yaml").exists() or any(entry.suffix in _FILES for entry in folder.iterdir())
+
+
+def read_expanded(
+    paths: dict[str, bool], namespace: str | None, console: Console, force_driven: bool
+) -> "tuple[list[Run], dict[str, str]]":
+    """The runs, and a sentence for each recording of a folder that is passed over because it cannot be used.
+
+    A recording that was named itself must be usable: DataError says why it is not.
+    """
+    runs, passed = [], {}
+    with console.progress("Reading") as progress:
+        for done, (path, from_folder) in enumerate(paths.items()):
+            progress(done / len(paths))
+            try:
+                runs.append(_read(path, namespace, console, force_driven))
+            except DataError as problem:
+                if not from_folder:
+                    raise
+                passed[path] = str(problem)
+                console.note(f"Passed over: {problem}")
+    if not runs:
+        raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(passed.values())[-1]}")
+    return _told_apart(runs, [path for path in paths if path not in passed]), passed
+
+
+def _read(path: str, namespace: str | None, console: Console, force_driven: bool) -> "Run":
+    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.records import read_recording
+
+    recording = read_recording(path, namespace)
+    for warning in recording.warnings:
+        console.note(f"{recording.name}: {warning}")
+    return make_run(recording, force_driven)
+
+
+def _told_apart(runs: "list[Run]", paths: Sequence[str]) -> "list[Run]":
+    """Runs of the same name are called by their paths."""
+    names = [run.name for run in runs]
+    return [
+        replace(run, name=path) if names.count(run.name) > 1 else run for run, path in zip(runs, paths, strict=True)
+    ]
