@@ -4,7 +4,7 @@ from pneumo_ros.plant.effect import Effect, Parameter, State
 
 
 class DwellTimeBreakaway(Effect):
-    """Static friction rises with the time at rest and saturates; sliding wipes it out: w' = (1 - w) / tau - w |v| / d."""
+    """Static friction rises with time at rest and saturates; sliding wipes it out: w' = (1 - w) / tau - w |v| / d."""
 
     rise = Parameter(20.0, "N", "largest additional static friction", low=0.0, high=1e5, neutral=0.0)
     time_constant = Parameter(1.0, "s", "time constant tau of rest", low=1e-3, high=1e4)

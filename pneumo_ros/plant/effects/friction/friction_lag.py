@@ -2,6 +2,8 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
+SHORTEST = 1e-6  # s: what is shorter, no step can tell from none
+
 
 class FrictionLag(Effect):
     """The lubricant film follows velocity with a time constant: the Stribeck curve sees v_f, v_f' = (v - v_f) / tau."""
@@ -14,7 +16,7 @@ class FrictionLag(Effect):
     signature = "the loop of friction over velocity widens with frequency"
 
     def equations(v, v_f, time_constant):
-        rate_v_f = 1.0 / max(time_constant, 1e-6)
+        rate_v_f = 1.0 / max(time_constant, SHORTEST)
         der_v_f = rate_v_f * (v - v_f)
         slip = v_f
         return slip, der_v_f, rate_v_f

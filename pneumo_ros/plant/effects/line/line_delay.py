@@ -2,6 +2,8 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
+SHORTEST = 1e-6  # s: what is shorter, no step can tell from none
+
 
 class LineDelay(Effect):
     """Flow arrives late through the tubes: three equal first-order lags per line that add to the transport delay.
@@ -23,7 +25,7 @@ class LineDelay(Effect):
     signature = "flow is a delayed copy of what the valve gives"
 
     def equations(valve_flow_a, valve_flow_b, a_1, a_2, a_3, b_1, b_2, b_3, delay, loss):
-        rate_a_1 = 3.0 / max(delay, 1e-6)
+        rate_a_1 = 3.0 / max(delay, SHORTEST)
         rate_a_2, rate_a_3, rate_b_1, rate_b_2, rate_b_3 = rate_a_1, rate_a_1, rate_a_1, rate_a_1, rate_a_1
         der_a_1, der_b_1 = (
             rate_a_1 * ((1.0 - loss) * valve_flow_a - a_1),

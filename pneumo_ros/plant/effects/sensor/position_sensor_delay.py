@@ -2,6 +2,8 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
+SHORTEST = 1e-6  # s: what is shorter, no step can tell from none
+
 
 class PositionSensorDelay(Effect):
     """The measured position lags by tau: y_m = y - e, e' = v - e / tau, a delay's first-order stand-in."""
@@ -14,7 +16,7 @@ class PositionSensorDelay(Effect):
     signature = "position lags the pressures; the residual follows jerk"
 
     def equations(v, y_measured, e, delay):
-        rate_e = 1.0 / max(delay, 1e-6)
+        rate_e = 1.0 / max(delay, SHORTEST)
         der_e = v - rate_e * e
         y_measured = y_measured - e
         return y_measured, der_e, rate_e

@@ -6,8 +6,8 @@ from pneumo_ros.plant.effect import Effect, Parameter, atan
 class ArctanFlow(Effect):
     """Mass flow of the 5/3 servo valve, Eqs. 6-9: q = atan(k_u u) beta (pressure difference over the open edge)."""
 
-    filling_coefficient = Parameter(0.69501e-8, "kg/(s Pa)", "flow coefficient beta_fill", low=0.0, high=1e-4)
-    exhaust_coefficient = Parameter(0.898105e-8, "kg/(s Pa)", "flow coefficient beta_exhaust", low=0.0, high=1e-4)
+    filling_coefficient = Parameter(0.69501e-8, "kg/(s Pa)", "flow coefficient beta_fill", low=0.0, high=1e-6)
+    exhaust_coefficient = Parameter(0.898105e-8, "kg/(s Pa)", "flow coefficient beta_exhaust", low=0.0, high=1e-6)
     voltage_gain = Parameter(2.0, "1/V", "gain k_u inside the arctangent", low=0.01, high=100.0)
 
     source = "paper Eqs. 6-9; Endler 2009"
