@@ -192,13 +192,21 @@ def _whole_step(s: str, rates: list[str], weight: str) -> str:
     return f"{s}_n = {s} + " + (exponential if s in rates else f"h * d_{s}")
 
 
+def _is_velocity(s: str, resolver: "Resolver") -> bool:
+    return resolver.states[s].states[s].unit == "m/s"
+
+
+def _kick(velocities: list[str], rates: list[str]) -> list[str]:
+    lines = [_whole_step(s, rates, "damped") for s in velocities]
+    return lines + [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
+
+
 def _step(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
-    velocities = [s for s in states if resolver.states[s].states[s].unit == "m/s"]
+    velocities = [s for s in states if _is_velocity(s, resolver)]
     lines = ["half = 0.5 * h", "middle = t + half", _evaluate(states, rates, names, "", "t")]
     lines += [_half_step(s, rates) for s in states]
     lines.append(_evaluate(states, rates, names, "_m", "middle"))
-    lines += [_whole_step(s, rates, "damped") for s in velocities]
-    lines += [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
+    lines += _kick(velocities, rates)
     lines.append(_evaluate(states, rates, names, "_m", "middle"))
     lines += [_whole_step(s, rates, "relaxation") for s in states if s not in velocities]
     lines.append(f"return after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
@@ -272,7 +280,11 @@ def _follow(resolver: "Resolver", states: list[str], rates: list[str], names: li
     lines += [*between("_m", "((s + 0.5) / steps)"), *(_half_step(s, rates) for s in own)]
     lines += [_evaluate(states, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / steps)")]
     lines += [f"mean_{s} += d_{s}" for s in states]
-    lines += [_whole_step(s, rates, "relaxation") for s in own]
+    swinging = [s for s in own if _is_velocity(s, resolver)]
+    if swinging:
+        lines += _kick(swinging, rates)
+        lines.append(_evaluate(states, rates, names, "_m", "t + half"))
+    lines += [_whole_step(s, rates, "relaxation") for s in own if s not in swinging]
     targets = ", ".join(s if s in own else "_" for s in states) + ","
     lines.append(f"{targets} = after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
     body = "\n".join("            " + line for line in lines)
