@@ -26,9 +26,9 @@ _RANGES = {  # by unit: where the random values of states and signals lie
 }  # fmt: skip
 
 
-def room(effect: type[Effect]) -> str:
-    """The folder of the catalogue an effect stands in."""
-    return effect.__module__.split(".")[-2]
+def moves_piston(effect: type[Effect]) -> bool:
+    """Whether an effect stands in a room of the catalogue whose effects act on the piston."""
+    return effect.__module__.split(".")[-2] in ("friction", "piston")
 
 
 def meaning(name: str, effect: type[Effect]) -> tuple[str, Parameter | None]:

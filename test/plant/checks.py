@@ -10,12 +10,12 @@ from pneumo_ros.plant import Effect, Model
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.plant.signals import SIGNALS
 
-CYCLES = ((0.0, 1e-5, 5.0), (0.5, 2e-3, 1.0), (0.9, 0.3, 0.2))  # centre [m], amplitude [m], frequency [Hz]
+CYCLES = ((0.0, 1e-5, 20.0), (0.5, 2e-3, 5.0), (0.9, 0.15, 2.0))  # centre [m], amplitude [m], frequency [Hz]
 
 
 def functions(effect: type[Effect]) -> list[str]:
     """The functions of an effect that a kernel runs."""
-    return [key for key in ("equations", "advance") if key in effect.functions]
+    return [key for key in ("equations", "outputs", "advance") if key in effect.functions]
 
 
 def check_documentation(effect: type[Effect]) -> None:
@@ -89,7 +89,7 @@ def cycle_work(model: Model, centre: float, amplitude: float, frequency: float) 
     omega, sample, held = 2.0 * np.pi * frequency, 1.0 / (count * frequency), np.full_like(t, 4e5)
     v = amplitude * omega * np.cos(omega * t)
     measured = np.column_stack([centre + amplitude * np.sin(omega * t), v, held, held])
-    x, _ = model.follow(measured, np.zeros_like(t), model.state()[4:], sample_time=sample, step=sample / 4)
+    x, _ = model.follow(measured, np.zeros_like(t), model.state()[4:], sample_time=sample, step=5e-5)
     seen = model.outputs(x, np.zeros_like(t), start=-sample, sample_time=sample)
     power = ((seen["friction"] + seen["force"]) * v)[-count - 1 :]
     mean = 0.5 * (power[1:] + power[:-1]) * sample
@@ -97,12 +97,14 @@ def cycle_work(model: Model, centre: float, amplitude: float, frequency: float) 
 
 
 def check_dissipation(model: Model, effect: type[Effect]) -> None:
-    """A closed cycle takes energy, or at least gives none, for several motions and parameters."""
+    """A closed cycle takes energy, or at least gives none, for several motions and parameters without a caution."""
     random = seeded(effect.name)
     for cycle in CYCLES:
-        for values in ({}, own_values(effect, random)):
-            work, size = cycle_work(in_python(model.with_parameters(values)), *cycle)
-            assert work >= -1e-2 * size, f"{work} of {size} J over centre, amplitude, frequency {cycle} with {values}"
+        for values in ({}, own_values(effect, random), own_values(effect, random)):
+            varied = model.with_parameters(values)
+            if not varied.cautions():
+                work, size = cycle_work(varied, *cycle)
+                assert work >= -1e-2 * size, f"{work} of {size} J over centre, amplitude, frequency {cycle}: {values}"
 
 
 def mass_rates(model: Model, p_a: float, p_b: float, supply: float, atmosphere: float, voltage: float) -> np.ndarray:

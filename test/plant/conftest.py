@@ -10,9 +10,13 @@ import pytest
 
 _PROGRAM = """
 import numpy as np
-from plant.catalogue import CATALOGUE, machine
+from plant.catalogue import CATALOGUE, lone_machine, machine, moves_piston
 for effect in CATALOGUE:
-    machine(effect.name).simulate(np.zeros(0), machine(effect.name).state())
+    model = machine(effect.name)
+    model.simulate(np.zeros(0), model.state())
+    if moves_piston(effect):
+        model = lone_machine(effect.name)
+        model.outputs(model.follow(np.zeros((1, 4)), np.zeros(0), model.state()[4:])[0])
 """
 
 

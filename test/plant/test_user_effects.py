@@ -93,17 +93,17 @@ class Clock(Effect):
     \"\"\"Integrates the time, and counts steps: what a memory does that advances once per step.\"\"\"
 
     way = State("s", "integral of the time")
-    steps = State("1", "steps so far")
+    count = State("1", "steps so far")
     last = State("s", "time at the end of the last step")
 
     def equations(t):
         der_way = t
         return der_way
 
-    def advance(steps, t):
-        steps = steps + 1.0
+    def advance(count, t):
+        count = count + 1.0
         last = t
-        return steps, last
+        return count, last
 """
 
 

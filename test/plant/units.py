@@ -6,6 +6,7 @@ A value of exactly zero fits any dimension: `max(x, 0.0)` and `opening = 0.0` me
 import math
 import re
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType, SimpleNamespace
 from typing import Any
 
@@ -118,9 +119,29 @@ AWARE: dict[str, Any] = {name: _pure(getattr(maths, name)) for name in _NUMBERS}
 AWARE |= {"sqrt": lambda q: quantity(q) ** 0.5, "sign": lambda q: maths.sign(quantity(q).value), "pi": math.pi}
 
 
+def _constants(function: FunctionType) -> dict[str, Quantity]:
+    """Constants of the function's module that carry a unit: a number, and a comment that begins with it."""
+    found = {}
+    for line in Path(function.__code__.co_filename).read_text(encoding="utf-8").splitlines():
+        constant = re.match(r"([A-Z_]+) = [^#]+#\s*([^,:;]+)", line)
+        if constant and isinstance(function.__globals__.get(constant[1]), float):
+            words = constant[2].split()
+            texts = (" ".join(words[:n]) for n in range(len(words), 0, -1))
+            known = next((text for text in texts if _is_unit(text)), "1")
+            found[constant[1]] = unit(known) * function.__globals__[constant[1]]
+    return found
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        return bool(unit(text))
+    except ValueError:
+        return False
+
+
 def with_units(function: FunctionType) -> FunctionType:
     """The same function, and all it calls in its own module, computing with quantities."""
-    scope: dict[str, Any] = {**function.__globals__, **AWARE, "math": SimpleNamespace(**AWARE)}
+    scope: dict[str, Any] = {**function.__globals__, **_constants(function), **AWARE, "math": SimpleNamespace(**AWARE)}
     for name, value in function.__globals__.items():
         if isinstance(value, FunctionType) and value.__module__ == function.__module__:
             scope[name] = FunctionType(value.__code__, scope, name, value.__defaults__)
