@@ -75,6 +75,7 @@ setup(
             "pneumo = pneumo_ros.command.main:main",
             "simulator = pneumo_ros.ros.simulator:main",
             "controller = pneumo_ros.ros.controller:main",
+            "axis = pneumo_ros.ros.axis:main",
             "recorder = pneumo_ros.ros.recorder:main",
             "player = pneumo_ros.ros.player:main",
         ],

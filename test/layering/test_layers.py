@@ -21,9 +21,10 @@ ALLOWED = {
     "config": set(),
     "identify": {"plant", "records", "control"},
     "diagnose": {"identify", "plant", "records", "control"},
+    "experiment": {"identify", "plant", "records", "control"},
     "report": {"diagnose", "identify", "plant", "records", "control"},
-    "ros": {"diagnose", "identify", "plant", "records", "control"},
-    "command": {"report", "diagnose", "identify", "plant", "records", "control"},
+    "ros": {"experiment", "diagnose", "identify", "plant", "records", "control"},
+    "command": {"report", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "__main__": {"command"},
 }
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", "rosidl_runtime_py", "rosbag2_py"}

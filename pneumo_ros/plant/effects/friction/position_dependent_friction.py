@@ -5,7 +5,7 @@ from pneumo_ros.plant.effect import Effect, Parameter
 KNOTS = 25
 
 
-def bump(u):
+def bump(u: float) -> float:
     """Cubic B-spline of unit spacing, centred at 0 (de Boor 1978)."""
     outer, inner = max(2.0 - abs(u), 0.0), max(1.0 - abs(u), 0.0)
     return (outer * outer * outer - 4.0 * inner * inner * inner) / 6.0

@@ -9,7 +9,7 @@ LINEAR = (
 )
 
 
-def ratio_function(ratio, b):
+def ratio_function(ratio: float, b: float) -> float:
     """Share of the sonic flow at a pressure ratio: 1 below b, an ellipse above, linear near 1."""
     bent = (min(max(ratio, b), LINEAR) - b) / (1.0 - b)
     knee = (LINEAR - b) / (1.0 - b)
@@ -18,7 +18,7 @@ def ratio_function(ratio, b):
     return line if ratio > LINEAR else ellipse
 
 
-def edge_flow(p_1, p_2, conductance, b, temperature):
+def edge_flow(p_1: float, p_2: float, conductance: float, b: float, temperature: float) -> float:
     """Mass flow from p_1 to p_2 [kg/s], ISO 6358-1: C rho_0 p_1 sqrt(T_0 / T) psi(p_2 / p_1), odd in the direction."""
     high, low = max(p_1, p_2), min(p_1, p_2)
     flow = conductance * NORMAL_DENSITY * high * sqrt(NORMAL_TEMPERATURE / temperature) * ratio_function(low / high, b)
