@@ -48,8 +48,8 @@ def edges(variable: Array, count: int) -> Array:
 def bin_means(variable: Array, value: Array, cluster: Index, at: Array, fewest: int) -> Bins:
     """Means of `value` (n,) in bins of `variable` (n,) with edges `at`; bins of fewer than `fewest` are left out.
 
-    The interval is the cluster-robust one (Liang and Zeger 1986): deviations are summed within clusters first; Student's
-    factor for as many clusters as there are.
+    The interval is the cluster-robust one (Liang and Zeger 1986): deviations are summed within clusters first; with
+    Student's factor for as many clusters as there are.
     """
     place = np.digitize(variable, at) - 1
     rows = []
