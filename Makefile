@@ -3,7 +3,7 @@
 # make bench  print the tables of benchmarks/
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
-# (~/.ros unless set otherwise).
+# (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
 #   PYTHON=python3.12       the Python to use; else the first suitable one is found
 #   RIG=path                recordings of a test rig, for the demo (../shared/rig)
 #   DEMO="--seconds 5"      further options of `pneumo demo`
@@ -63,6 +63,7 @@ demo: $(READY) $(MEASURED) | .cache/tmp
 	@$(BIN)/pneumo demo --recording $(MEASURED) $(DEMO)
 
 test: $(READY) | .cache/tmp
+	@tools/chromium
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
