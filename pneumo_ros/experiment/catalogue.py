@@ -1,0 +1,64 @@
+"""The experiments there are, by the name a user types."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.experiment import constant_voltage, excitation
+from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant import Model
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What an experiment is good for, and the function that makes its programme for a model and seconds per run."""
+
+    purpose: str
+    make: Callable[[Model, float], Programme]
+    seconds: float
+
+
+EXPERIMENTS = {
+    "constant-voltage": Experiment(
+        "constant speeds both ways: friction map, breakaway forces, flow coefficients, dead zone (pneumo identify)",
+        lambda model, seconds: constant_voltage.constant_voltage(model, seconds=seconds),
+        constant_voltage.SECONDS,
+    ),
+    "steps": Experiment(
+        "random levels and pauses: refits of the whole machine, and runs to judge it by (pneumo compare --refit)",
+        excitation.steps,
+        excitation.SECONDS,
+    ),
+    "sweep": Experiment(
+        "cosines of rising frequency: valve dynamics, chambers, leakage (pneumo diagnose)",
+        excitation.sweep,
+        excitation.SECONDS,
+    ),
+    "slow-reversals": Experiment(
+        "slow sines a little beyond the dead zone: friction at reversal, loads that push one way (pneumo diagnose)",
+        excitation.slow_reversals,
+        excitation.SECONDS,
+    ),
+}
+
+
+def make_programme(name: str, model: Model, voltages: Sequence[float] = (), seconds: float | None = None) -> Programme:
+    """The programme of the experiment `name` for `model`; `voltages` [V] are for constant-voltage only.
+
+    Raises UsageError for an unknown experiment, with the nearest names, and for values that make no sense.
+    """
+    if name not in EXPERIMENTS:
+        raise UsageError(unknown_name("experiment", name, EXPERIMENTS))
+    experiment = EXPERIMENTS[name]
+    make = experiment.make
+    if voltages:
+        if name != "constant-voltage":
+            raise UsageError(f"{name} chooses its voltages itself; voltages are for constant-voltage")
+        make = partial(_with_voltages, voltages)
+    return make(model, experiment.seconds if seconds is None else seconds)
+
+
+def _with_voltages(voltages: Sequence[float], model: Model, seconds: float) -> Programme:
+    return constant_voltage.constant_voltage(model, voltages, seconds)

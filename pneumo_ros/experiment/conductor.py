@@ -1,0 +1,183 @@
+"""Who conducts a programme: measurement in, voltage out, sample by sample; the same on a plant and in a rehearsal."""
+
+import math
+from collections.abc import Callable, Generator
+
+from pneumo_ros.experiment.outcome import AbortedError, Outcome
+from pneumo_ros.experiment.programme import Programme, Trial
+from pneumo_ros.experiment.trace import Trace
+
+STILL, WITHIN = 0.3, 3e-4  # s, m: a piston that stays within so much for so long rests
+CALM = 10.0  # s: longest wait for rest at closed valve
+SLIP = 2e-3  # m: the piston has broken away
+WRONG = 2e-2  # m: the piston goes the wrong way
+STUCK = 10.0  # s without SLIP of progress on the way back
+NEAR = 0.05  # of the room: a start this near the limit is near enough
+LAST = 1.0  # s over which the final speed is taken
+BRAKE, PRESENT = 0.02, 0.05  # m/s above which the valve brakes; s over which the present speed is taken
+
+Course = Generator[float, None, None]
+
+
+class Conductor:
+    """Takes the piston through a programme. `step` says the voltage for each measurement until `done`.
+
+    `recording` is the name of the trial that is to be recorded from this measurement on, None between trials.
+    """
+
+    def __init__(self, programme: Programme, tell: Callable[[str], None] = lambda text: None) -> None:
+        """`tell` gets a sentence now and then."""
+        self.programme, self._tell = programme, tell
+        self.recording: str | None = None
+        self.outcomes: list[Outcome] = []
+        self.done = False
+        self.index = 0  # of the trial that comes next, or is under way
+        self.time = self.position = 0.0
+        self._inside = False
+        self._now, self._late = Trace(PRESENT), Trace(LAST)
+        self._course = self._all()
+
+    def step(self, time: float, position: float) -> float:
+        """Voltage [V] from now, `time` [s, any origin], on, with the piston at `position` [m].
+
+        Raises AbortedError when the plant must be stopped; after that, and when all is done, the voltage is 0.
+        """
+        self.time, self.position = time, position
+        self._check()
+        self._now.add(time, position)
+        return next(self._course, 0.0)
+
+    def _check(self) -> None:
+        """A plant may be found at the end of its stroke, but must not be driven there."""
+        if not math.isfinite(self.position):
+            self._stop(f"the position is {self.position}; look after the sensor")
+        if abs(self.position) < self.programme.end:
+            self._inside = True
+        elif self._inside:
+            self._stop(f"the piston has reached the end stop, {self.position:+.3f} m (end: {self.programme.end:g} m)")
+
+    def _stop(self, reason: str) -> None:
+        self.recording = None
+        self._course = _nothing()
+        raise AbortedError(reason)
+
+    # --- the course of things: each yields voltages -------------------------------------------------------------------
+
+    def _all(self) -> Course:
+        for index, trial in enumerate(self.programme.trials):
+            self.index = index
+            yield from self._settle()
+            if way := self._way_to_start(trial):
+                yield from self._go(*way)
+                yield from self._settle()
+            yield from self._run(trial)
+        yield from self._settle()
+        self.done = True
+
+    def _settle(self) -> Course:
+        """Brake, then closed valve until the piston rests.
+
+        The air that drives a piston goes on to do so in closed chambers: without braking it coasts for decimetres.
+        """
+        direction = 1 if self._now.speed > 0.0 else -1
+        while direction * self._now.speed > BRAKE:
+            yield -direction * self._moderate(-direction)
+        begin = since = self.time
+        where = self.position
+        while self.time - since < STILL:
+            if self.time - begin > CALM:
+                self._tell(f"the piston does not come to rest at 0 V ({self.position:+.4f} m after {CALM:g} s)")
+                return
+            yield 0.0
+            if abs(self.position - where) > WITHIN:
+                where, since = self.position, self.time
+
+    def _way_to_start(self, trial: Trial) -> tuple[int, float] | None:
+        """Direction and target of the way to where the trial can begin; None where it can begin at once."""
+        low, high, span = self.programme.low, self.programme.high, self.programme.span
+        if trial.direction:
+            least = min(trial.travel, (1.0 - 2.0 * NEAR) * span) if self.outcomes else (1.0 - 2.0 * NEAR) * span
+            if self._room(trial.direction) >= least:
+                return None
+            return -trial.direction, low + NEAR * span if trial.direction > 0 else high - NEAR * span
+        offset = self.position - 0.5 * (low + high)
+        if abs(offset) < 0.15 * span:
+            return None
+        return (-1, 0.5 * (low + high) + NEAR * span) if offset > 0.0 else (1, 0.5 * (low + high) - NEAR * span)
+
+    def _go(self, direction: int, target: float) -> Course:
+        """To `target` at a moderate voltage."""
+        volts = self._moderate(direction)
+        start = best = self.position
+        since = self.time
+        while direction * (target - self.position) > 0.0:
+            self._watch(direction, start, direction * volts)
+            if direction * (self.position - best) > SLIP:
+                best, since = self.position, self.time
+            elif self.time - since > STUCK:
+                self._stop(
+                    f"at {direction * volts:+.2f} V the piston stays at {self.position:+.3f} m; is the supply on, and "
+                    "does the valve get the command? (a higher return_right and return_left may help)"
+                )
+            yield direction * volts
+
+    def _watch(self, direction: int, start: float, volts: float) -> None:
+        if direction * (self.position - start) < -WRONG:
+            self._stop(
+                f"at {volts:+.2f} V the piston went {1e3 * abs(self.position - start):.0f} mm the wrong way: hoses or "
+                "the sign of valve or position are swapped, or a load is stronger than the pressure"
+            )
+
+    def _run(self, trial: Trial) -> Course:
+        """A rest, then the trial's voltage, both recorded."""
+        self.recording = trial.name
+        begin = self.time
+        while self.time - begin < self.programme.rest:
+            yield 0.0
+        opened, start = self.time, self.position
+        self._late = Trace(LAST)
+        ended = yield from (self._push(trial) if trial.direction else self._excite(trial))
+        self.recording = None
+        seconds, way = self.time - opened, abs(self.position - start)
+        self.outcomes.append(Outcome(trial.name, trial.voltage.text, ended, seconds, way, self._late.speed))
+
+    def _push(self, trial: Trial) -> Generator[float, None, str]:
+        """One way, until it is long enough, the time is up, or there is no more room; returns why it ended."""
+        opened, start = self.time, self.position
+        moved: float | None = None  # when it broke away
+        while True:
+            way = trial.direction * (self.position - start)
+            volts = trial.voltage.at(self.time - opened)
+            self._watch(trial.direction, start, volts)
+            if moved is None and way > SLIP:
+                moved = self.time
+            if self._room(trial.direction) <= 0.0:
+                return "limit"
+            if way >= trial.travel:
+                return "travel"
+            if self.time - (opened if moved is None else moved) >= (trial.patience if moved is None else trial.seconds):
+                return "still" if moved is None else "time"
+            self._late.add(self.time, self.position)
+            yield volts
+
+    def _excite(self, trial: Trial) -> Generator[float, None, str]:
+        """Both ways for a given time; beyond a limit the voltage is turned inwards."""
+        opened = self.time
+        while self.time - opened < trial.seconds:
+            volts = trial.voltage.at(self.time - opened)
+            self._late.add(self.time, self.position)
+            yield -volts if self._room(1 if volts > 0.0 else -1) <= 0.0 else volts
+        return "time"
+
+    def _moderate(self, direction: int) -> float:
+        """Magnitude of the voltage that moves the piston at a moderate speed [V]."""
+        return self.programme.return_right if direction > 0 else self.programme.return_left
+
+    def _room(self, direction: int) -> float:
+        """Way left to the limit [m]."""
+        return self.programme.high - self.position if direction > 0 else self.position - self.programme.low
+
+
+def _nothing() -> Course:
+    """No more voltages."""
+    yield from ()

@@ -1,0 +1,33 @@
+"""The room that experiments leave a piston, and the voltages that move it through it."""
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Model
+
+MARGIN = 0.05  # of the stroke, before either end: room to coast after the valve closes
+END = 0.005  # of the stroke, before either end: nobody gets there by coasting
+MODERATE = 0.3  # V beyond the dead zone
+
+
+def room_of(model: Model, margin: float = MARGIN) -> dict[str, float]:
+    """low, high and end [m] of a programme for `model`, and return_right and return_left [V].
+
+    `margin` is the part of the stroke that is kept free before either end. Raises UsageError for a model without valve.
+    """
+    if model.force_driven:
+        raise UsageError(
+            f"{model.name} has no chambers, so no valve moves it; give --model a machine file with chambers"
+        )
+    stroke = model["piston.stroke"]
+    high = (0.5 - margin) * stroke
+    right, left = dead_zone(model)
+    return {
+        "low": -high, "high": high, "end": (0.5 - END) * stroke,
+        "return_right": right + MODERATE, "return_left": left + MODERATE,
+    }  # fmt: skip
+
+
+def dead_zone(model: Model) -> tuple[float, float]:
+    """Voltages [V] at which the valve begins to open, right and left, both positive."""
+    names = ("dead_zone.right_limit", "dead_zone.left_limit")
+    right, left = (model.parameters.get(name, 0.0) for name in names)
+    return right, left

@@ -1,0 +1,32 @@
+"""What came of an experiment, as plain data."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from pneumo_ros.experiment.conductor import Conductor
+from pneumo_ros.experiment.outcome import Outcome
+from pneumo_ros.experiment.programme import Programme
+
+
+def described(outcome: Outcome, folder: Path) -> dict[str, Any]:
+    """One trial with SI units in the names, and where its recording is."""
+    keys = {"seconds": "seconds", "travel": "travel_m", "speed": "speed_m_s"}
+    return {keys.get(key, key): value for key, value in asdict(outcome).items()} | {"path": str(folder / outcome.name)}
+
+
+def summary(
+    programme: Programme, conductor: Conductor, folder: Path, failure: Exception | None
+) -> tuple[str, dict[str, Any]]:
+    """A sentence, and the data; `failure` is what ended the experiment early, None if nothing did."""
+    complete = failure is None and conductor.done
+    trials = [described(outcome, folder) for outcome in conductor.outcomes]
+    said = "all trials are done" if complete else f"{failure}; the valve is closed"
+    return f"{said}; {len(trials)} of {len(programme.trials)} recorded in {folder}", {
+        "schema_version": 1,
+        "experiment": programme.experiment,
+        "machine": programme.machine,
+        "complete": complete,
+        "reason": "" if complete else str(failure),
+        "trials": trials,
+    }

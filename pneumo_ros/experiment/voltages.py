@@ -1,0 +1,125 @@
+"""Valve voltages of one trial as functions of the time since its valve opened."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from pneumo_ros.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Constant:
+    """`volts` [V], held as long as the trial lasts."""
+
+    volts: float
+
+    def at(self, time: float) -> float:
+        """Voltage [V]; the same at every time."""
+        return self.volts
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude [V]."""
+        return abs(self.volts)
+
+    @property
+    def text(self) -> str:
+        """What it is, for a person."""
+        return f"{self.volts:+.3f} V"
+
+
+@dataclass(frozen=True)
+class Steps:
+    """One level after the other: pairs of how long [s] and how much [V]."""
+
+    levels: tuple[tuple[float, float], ...]
+
+    def at(self, time: float) -> float:
+        """Voltage [V] at `time` [s] since the start; the last level remains."""
+        for seconds, volts in self.levels:
+            time -= seconds
+            if time < 0.0:
+                return volts
+        return self.levels[-1][1]
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude [V]."""
+        return max(abs(volts) for _, volts in self.levels)
+
+    @property
+    def text(self) -> str:
+        """What it is, for a person."""
+        return f"{len(self.levels)} levels within {self.largest:.2f} V"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A cosine of `amplitude` [V] whose frequency goes linearly from `first` to `last` [Hz] in `seconds`.
+
+    A cosine, so that the piston moves about where it begins.
+    """
+
+    amplitude: float
+    first: float
+    last: float
+    seconds: float
+
+    def at(self, time: float) -> float:
+        """Voltage [V] at `time` [s] since the start."""
+        cycles = self.first * time + 0.5 * (self.last - self.first) / self.seconds * time * time
+        return self.amplitude * math.cos(2.0 * math.pi * cycles)
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude [V]."""
+        return abs(self.amplitude)
+
+    @property
+    def text(self) -> str:
+        """What it is, for a person."""
+        return f"cosine of {self.amplitude:.2f} V, {self.first:.2g} to {self.last:.2g} Hz"
+
+
+Voltage = Constant | Steps | Sweep
+FORMS = "constant: V, steps: [[seconds, V], ...] or sweep: {amplitude: V, first: Hz, last: Hz, seconds: s}"
+
+
+def as_dict(voltage: Voltage) -> dict[str, Any]:
+    """One entry, from the kind to its numbers, as programme files hold it."""
+    if isinstance(voltage, Constant):
+        return {"constant": voltage.volts}
+    if isinstance(voltage, Steps):
+        return {"steps": [list(level) for level in voltage.levels]}
+    return {"sweep": {k: getattr(voltage, k) for k in ("amplitude", "first", "last", "seconds")}}
+
+
+def from_dict(given: dict[str, Any]) -> Voltage:
+    """The voltage that the entries `constant`, `steps` or `sweep` describe. Raises UsageError unless it is exactly one
+    of them, with finite numbers.
+    """
+    kinds = [kind for kind in ("constant", "steps", "sweep") if kind in given]
+    try:
+        if kinds == ["constant"]:
+            return _checked(Constant(float(given["constant"])))
+        if kinds == ["steps"]:
+            return _checked(Steps(tuple((float(seconds), float(volts)) for seconds, volts in given["steps"])))
+        if kinds == ["sweep"]:
+            return _checked(Sweep(**{key: float(value) for key, value in given["sweep"].items()}))
+    except (TypeError, ValueError, AttributeError) as error:
+        raise UsageError(f"{kinds[0]} is {given[kinds[0]]!r}; a trial takes {FORMS}") from error
+    raise UsageError(f"a trial takes one of {FORMS}; given: {', '.join(kinds) or 'none of them'}")
+
+
+def _checked(voltage: Voltage) -> Voltage:
+    """ValueError unless all numbers are finite and all durations positive."""
+    numbers = [voltage.largest] if not isinstance(voltage, Steps) or voltage.levels else [math.nan]
+    lengths = [1.0]
+    if isinstance(voltage, Steps):
+        lengths = [seconds for seconds, _ in voltage.levels]
+    elif isinstance(voltage, Sweep):
+        lengths = [voltage.seconds]
+        numbers += [voltage.first, voltage.last]
+    if not all(map(math.isfinite, (*numbers, *lengths))) or min(lengths, default=0.0) <= 0.0:
+        raise ValueError
+    return voltage

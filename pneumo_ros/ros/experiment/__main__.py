@@ -1,0 +1,7 @@
+"""`python -m pneumo_ros.ros.experiment`."""
+
+import sys
+
+from pneumo_ros.ros.experiment import main
+
+sys.exit(main())

@@ -1,0 +1,66 @@
+"""The plant as its topics show it: what is missing of it, what has fallen silent, who else commands it."""
+
+import time
+from collections.abc import Mapping
+
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+
+from pneumo_ros.records.contract import JOINT_STATES, PRESSURE_A, PRESSURE_B
+
+PRESSURES = (PRESSURE_A, PRESSURE_B)
+SEEK = 1.0  # s between two looks for others who send commands
+
+
+class Plant:
+    """Answers questions about a plant before and while it is driven."""
+
+    def __init__(self, node: Node, heard: Mapping[str, float], commands: Publisher) -> None:
+        """`heard`: when each of the contract's topics was last heard [s, monotonic]; `commands` drives the valve."""
+        self.other_joints: list[str] = []  # those of joint states without the joint that is wanted
+        self._node, self._heard, self._commands = node, heard, commands
+        self._sought = 0.0
+
+    def missing(self, placed: bool) -> str:
+        """A sentence on what is not there, empty when the plant is complete; `placed`: positions have come."""
+        if not placed:
+            return self._no_joint()
+        silent = [self._node.resolve_topic_name(name) for name in PRESSURES if name not in self._heard]
+        if silent:
+            return f"no message on {' and '.join(silent)}: without both pressures the recordings would be of no use"
+        if not self._commands.get_subscription_count():
+            return f"nobody listens on {self._commands.topic_name}: start the simulator, or the driver of the valve"
+        if rivals := self._others():
+            return f"{rivals} sends {self._commands.topic_name}, too; stop it first"
+        return ""
+
+    def silent(self, timeout: float, placed: float) -> str:
+        """The topic that said nothing new for `timeout` [s], empty if none; `placed`: last position [s, monotonic]."""
+        now = time.monotonic()
+        if now - placed > timeout:
+            return f"new {JOINT_STATES}"
+        return next((name for name in PRESSURES if now - self._heard[name] > timeout), "")
+
+    def rivals(self) -> str:
+        """Who else sends commands, looked for once a second."""
+        if time.monotonic() - self._sought < SEEK:
+            return ""
+        self._sought = time.monotonic()
+        return self._others()
+
+    def _others(self) -> str:
+        offered = self._node.get_publishers_info_by_topic(self._commands.topic_name)
+        ours = self._node.get_name(), self._node.get_namespace()
+        names = {(one.node_name, one.node_namespace) for one in offered} - {ours}
+        return " and ".join(sorted(f"{space.rstrip('/')}/{name}" for name, space in names))
+
+    def _no_joint(self) -> str:
+        topic = self._node.resolve_topic_name(JOINT_STATES)
+        if self.other_joints:
+            return f"{topic} holds no position of the joint wanted, but of: {', '.join(self.other_joints)}"
+        there = [name for name, _ in self._node.get_topic_names_and_types() if name.endswith(f"/{JOINT_STATES}")]
+        others = [name for name in there if name != topic and self._node.count_publishers(name)]
+        if others:
+            spaces = ", ".join(name.removesuffix(f"/{JOINT_STATES}") or "/" for name in others)
+            return f"no message on {topic}, but there is an axis in the namespace {spaces}; choose it as namespace"
+        return f"no message on {topic}: start the simulator, or the driver of the rig"
