@@ -8,6 +8,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
+from pneumo_ros.records.message_types import trimmed
+
 _STAMP, _NUMBER = struct.Struct("<iI"), struct.Struct("<d")  # CDR on little-endian machines
 _MARK = Time(sec=0x1A2B3C4D, nanosec=0x0E0F1011)
 
@@ -20,7 +22,8 @@ class Template:
 
     def __init__(self, message: JointState | FluidPressure | Clock | Float64, numbers: list[float]) -> None:
         """`message` has the stamp _MARK, if it has one, and each of `numbers`, in order, exactly once."""
-        self._buffer = bytearray(serialize_message(message))
+        # Behind an empty sequence rclpy leaves bytes that are no part of the message, and that other readers refuse.
+        self._buffer = bytearray(trimmed(serialize_message(message), _type(message)))
         self._stamp = None if isinstance(message, Float64) else self._place(_STAMP.pack(_MARK.sec, _MARK.nanosec))
         self._numbers = [self._place(_NUMBER.pack(number)) for number in numbers]
 
@@ -36,6 +39,11 @@ class Template:
         for place, value in zip(self._numbers, numbers, strict=True):
             _NUMBER.pack_into(self._buffer, place, value)
         return bytes(self._buffer)
+
+
+def _type(message: JointState | FluidPressure | Clock | Float64) -> str:
+    """Name of a message's type, such as "std_msgs/msg/Float64"."""
+    return f"{type(message).__module__.partition('.')[0]}/msg/{type(message).__name__}"
 
 
 def joint_state(joint: str, velocity: bool = True) -> Template:

@@ -4,6 +4,7 @@ import math
 
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
+from records.making import STORE
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
@@ -29,6 +30,17 @@ def test_a_joint_state_is_filled_in(joint: str) -> None:
         assert message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec == stamp
     message = deserialize_message(messages.joint_state(joint, False).fill(STAMP, 0.1, 300.0), JointState)
     assert (list(message.position), list(message.velocity), list(message.effort)) == ([0.1], [], [300.0])
+
+
+@pytest.mark.parametrize("velocity", [True, False])
+@pytest.mark.parametrize("joint", ["piston", "a", "left/piston_joint"])
+def test_a_joint_state_ends_where_other_readers_expect_it(joint: str, velocity: bool) -> None:
+    """rosbags refuses a message with bytes left over."""
+    numbers = [0.1, -0.2, 300.0] if velocity else [0.1, 300.0]
+    data = messages.joint_state(joint, velocity).fill(STAMP, *numbers)
+    message = STORE.deserialize_cdr(data, "sensor_msgs/msg/JointState")
+    assert message.velocity.tolist() == numbers[1:-1]
+    assert message.effort.tolist() == [300.0]
 
 
 def test_other_messages_are_filled_in() -> None:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from records.making import assert_same, by_rosbags
-from ros.processes import Running, node, publisher, running
+from ros.processes import PATIENCE, Running, node, publisher, running
 
+from pneumo_ros.errors import DataError
 from pneumo_ros.records import Bag, read_recording, read_topics
 
 TOPICS = ["/joint_states", "/chamber_a/pressure", "/chamber_b/pressure", "/supply/pressure"]
@@ -32,6 +33,14 @@ def warnings(path: Path) -> str:
     return " ".join(bag.warnings)
 
 
+def recorded(path: Path, topic: str) -> int:
+    """How many messages of `topic` are on the disk so far."""
+    try:
+        return Bag(path).overview().counts.get(topic, 0)
+    except DataError:  # no file yet, or no message in it
+        return 0
+
+
 def closing(process: Running) -> str:
     """What the recorder says at its end."""
     return next(line for _, line in process.lines if "recorded" in line)
@@ -47,6 +56,21 @@ def test_four_topics_at_1_khz_are_recorded_whole(tmp_path: Path) -> None:
         assert numbers(tmp_path / "bag", topic) == list(range(4000))
     assert warnings(tmp_path / "bag") == ""
     assert_same(read_topics(tmp_path / "bag"), by_rosbags(tmp_path / "bag"))
+
+
+def test_a_simulator_without_velocity_is_recorded_for_every_reader(tmp_path: Path) -> None:
+    """rosbags refuses messages with stray bytes behind an empty sequence."""
+    simulator = node("simulator", publish_velocity=False)
+    with running(*recorder(tmp_path), cwd=tmp_path) as recording, running(*simulator, cwd=tmp_path) as source:
+        deadline = time.monotonic() + PATIENCE
+        while recorded(tmp_path / "bag", "/joint_states") < 100:
+            assert time.monotonic() < deadline, recording.said + source.said
+            time.sleep(0.1)
+        assert source.end(signal.SIGINT) == 0
+        assert recording.end(signal.SIGINT) == 0
+    heard = by_rosbags(tmp_path / "bag")["/joint_states"]
+    assert len(heard) >= 100
+    assert all(len(message.position) == 1 and not len(message.velocity) for _, message in heard)
 
 
 def test_a_recorder_that_cannot_keep_up_counts_what_it_lost(tmp_path: Path) -> None:
