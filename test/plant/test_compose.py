@@ -28,7 +28,7 @@ def test_products_multiply(tmp_path: Path) -> None:
     model = composed(tmp_path, "".join(text), "own", "other")
     bound = 0.5 * 3.0 * 100.0 / 1.4e6  # to which the bristle is taken back after a step
     for scaled, largest in ((model, bound), (in_python(AXIS), bound / 1.5)):
-        x = scaled.simulate([0.0], scaled.state(z=2e-4), sample_time=1e-5, step=1e-5)
+        x = scaled.simulate([0.0], scaled.state(v=0.1, z=2e-4), sample_time=1e-5, step=1e-5)
         assert x[0, 4] == pytest.approx(largest, rel=1e-12)
 
 

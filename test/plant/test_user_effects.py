@@ -125,6 +125,8 @@ def test_time_runs_on_in_parts_in_lanes_and_in_steppers(tmp_path: Path) -> None:
     lanes = model.simulate_lanes(np.zeros(6), states, first=first, samples=4, sample_time=0.5, step=0.1, start=10.0)
     assert lanes[0, :, 4:] == pytest.approx(whole[:4, 4:], rel=1e-12)
     assert lanes[1, -1, 4] == pytest.approx(0.5 * (13.0**2 - 11.0**2), rel=1e-12)
+    one = model.simulate_lanes(np.zeros(6), states, samples=3, sample_time=1.0, step=0.1, start=10.0, parts=2)[0]
+    assert one[:, 4:] == pytest.approx(parted[:, 4:], rel=1e-12)
     stepper = Stepper(model, model.state(), sample_time=0.5, step=0.1)
     assert [float(stepper.advance(0.0)[6]) for _ in range(3)] == pytest.approx([0.5, 1.0, 1.5], rel=1e-12)
 
