@@ -1,30 +1,59 @@
 """What may be wrong with a recording that can be read: each check returns sentences, none when all is well."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
+from pneumo_ros.records.block import Integers
 from pneumo_ros.records.series import Series
 
 GAP = 5.0  # sample times between two samples that count as a gap
+APART = 0.1  # s between the clocks of two topics that transport does not explain
 FEWEST = 10  # samples a recording is good for anything with
 
 
 def gaps(series: Series) -> list[str]:
     """Times without samples, longer than GAP sample times."""
-    if len(series) < FEWEST:
-        return []
-    steps = np.diff(series.stamp) * 1e-9
-    usual = float(np.median(steps))
-    wide = np.flatnonzero(steps > GAP * usual)
+    wide = _wide(series)
     if not len(wide):
         return []
+    steps = np.diff(series.stamp) * 1e-9
     longest = wide[np.argmax(steps[wide])]
     at = (series.stamp[longest] - series.stamp[0]) * 1e-9
     many = "1 gap" if len(wide) == 1 else f"{len(wide)} gaps"
     return [
-        f"{series.topic}: {many} of more than {GAP:g} sample times ({GAP * usual * 1e3:.3g} ms), the longest "
-        f"{steps[longest]:.3g} s at {at:.3f} s."
+        f"{series.topic}: {many} of more than {GAP:g} sample times ({GAP * np.median(steps) * 1e3:.3g} ms), "
+        f"the longest {steps[longest]:.3g} s at {at:.3f} s, {steps[wide].sum():.3g} s in all; what lies in a "
+        "gap is not used."
+    ]
+
+
+def outside_gaps(series: Series, others: Iterable[Series]) -> Series:
+    """`series` without what lies in a gap of one of `others`: there, values between messages would be made up."""
+    inside = np.zeros(len(series), dtype=bool)
+    for one in others:
+        wide = _wide(one)
+        after = np.searchsorted(one.stamp[wide], series.stamp, side="left") - 1  # the last gap that begins before
+        inside |= (after >= 0) & (series.stamp < one.stamp[np.append(wide, 0)[after] + 1])
+    return series.select(~inside)
+
+
+def _wide(series: Series) -> Integers:
+    """Indices of the samples before gaps."""
+    steps = np.diff(series.stamp)
+    if len(series) < FEWEST:
+        return steps[:0]
+    return np.flatnonzero(steps > GAP * np.median(steps))
+
+
+def other_clock(series: Series, joint_states: Series) -> list[str]:
+    """Whether the stamps of `series` come from another clock than those of `joint_states`, by the recorded times."""
+    late, usual = (float(np.median(one.log_time - one.stamp)) * 1e-9 for one in (series, joint_states))
+    if abs(late - usual) < APART:
+        return []
+    return [
+        f"{series.topic}: its stamps are {usual - late:+.3f} s off from those of {joint_states.topic} recorded at the "
+        "same time; if their clocks differ, synchronise them (NTP, chrony): signals are aligned by stamps."
     ]
 
 
@@ -51,9 +80,10 @@ def trimmed(before: Series, after: Series, why: str) -> list[str]:
     return [f"{before.topic}: {start:.3f} s at the start and {end:.3f} s at the end are left out, {why}."]
 
 
-def all_of(series: Iterable[Series], joint_states: Series) -> list[str]:
+def all_of(series: Collection[Series], joint_states: Series) -> list[str]:
     """Every check of the sampled signals."""
+    used = outside_gaps(joint_states, series)
     found = gaps(joint_states)
     for one in series:
-        found += gaps(one) + unmatched(one, joint_states)
+        found += gaps(one) + other_clock(one, joint_states) + unmatched(one, used)
     return found

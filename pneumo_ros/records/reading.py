@@ -26,6 +26,7 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
     pressures = [series for series in (pressure_a, pressure_b) if series]
     joints = _cut(signals, pressures, commands)
     signals.warnings += checks.all_of(pressures, joints)
+    joints = checks.outside_gaps(joints, pressures)
     time = seconds(joints.stamp, int(joints.stamp[0]))
     command_time, command, voltage = _zero_order_hold(commands, time, int(joints.stamp[0]))
     return Recording(
@@ -72,9 +73,22 @@ def _cut(signals: Signals, pressures: list[Series], commands: Series | None) -> 
         first = max(first, int(commands.stamp[0] - COMMAND_LEAD * step))
     inside = signals.joints.select((stamp >= first) & (stamp <= last))
     if len(inside) < FEWEST:
-        raise DataError(f"{signals.path}: joint states, pressures and commands do not overlap in time.")
+        raise DataError(_apart(signals, [*pressures, commands] if commands else pressures))
     signals.warnings += checks.trimmed(signals.joints, inside, "where pressures or commands are not known")
     return inside
+
+
+def _apart(signals: Signals, others: list[Series]) -> str:
+    """Sentence for topics that do not overlap in time: when each was stamped."""
+    origin = int(signals.joints.stamp[0])
+    spans = [
+        f"{one.topic} {seconds(one.stamp[[0]], origin)[0]:.3f} to {seconds(one.stamp[[-1]], origin)[0]:.3f} s"
+        for one in (signals.joints, *others)
+    ]
+    return (
+        f"{signals.path}: joint states, pressures and commands do not overlap in time: {', '.join(spans)}. If they "
+        "were recorded together, the clocks that stamp them differ: synchronise them (NTP, chrony) and record again."
+    )
 
 
 def _optional(signals: Signals, joints: Series, name: str) -> Array | None:

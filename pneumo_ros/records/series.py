@@ -90,12 +90,13 @@ def on_clock_of(joint_states: Series, log_time: Integers, warn: Callable[[str], 
     Usually that is the same clock. It is not when stamps are simulated time, when a recording is played back, or when
     another machine's clock is off: then the recorded times of the joint states tell which stamp belongs to which time.
     """
-    apart = float(np.percentile(joint_states.log_time - joint_states.stamp, 5))
-    if SAME_CLOCK[0] <= apart <= SAME_CLOCK[1]:
+    low, high = _apart(joint_states)
+    if SAME_CLOCK[0] <= low and high <= SAME_CLOCK[1]:
         return log_time
+    span = f"{low * 1e-9:+.3f} s" + (f" to {high * 1e-9:+.3f} s" if high - low > SAME_CLOCK[1] else "")
     warn(
-        f"{joint_states.topic}: stamps and recorded times are {apart * 1e-9:+.3f} s apart, so they come from different "
-        "clocks; commands, which have no stamp, are placed by the joint states recorded around them."
+        f"{joint_states.topic}: stamps and recorded times are {span} apart, so they come from different clocks, or the "
+        "recorder fell behind; commands, which have no stamp, are placed by the joint states recorded around them."
     )
     recorded, first = np.unique(joint_states.log_time, return_index=True)
     stamp, origin = joint_states.stamp[first], int(recorded[0])
@@ -104,6 +105,13 @@ def on_clock_of(joint_states: Series, log_time: Integers, warn: Callable[[str], 
     beyond = np.minimum(log_time - recorded[0], 0) + np.maximum(log_time - recorded[-1], 0)
     placed: Integers = stamp[0] + np.rint(passed * 1e9).astype(np.int64) + beyond
     return placed
+
+
+def _apart(series: Series) -> tuple[float, float]:
+    """Least and greatest of recorded time minus stamp [ns] over the parts of a series, each part's at its best."""
+    parts = np.array_split(series.log_time - series.stamp, max(min(len(series) // 100, 20), 1))
+    best = [float(np.percentile(part, 5)) for part in parts]
+    return min(best), max(best)
 
 
 def _count(mask: Mask) -> int:

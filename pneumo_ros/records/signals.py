@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from pneumo_ros.errors import DataError
-from pneumo_ros.records import contract
+from pneumo_ros.records import clocks, contract
 from pneumo_ros.records.bag import Bag
 from pneumo_ros.records.block import Channel
 from pneumo_ros.records.joints import joint_series
 from pneumo_ros.records.namespaces import check_types, choose_namespace
 from pneumo_ros.records.series import Series, finite, increasing, on_clock_of
+from pneumo_ros.records.topic_data import set_back
 from pneumo_ros.records.topics import collect
 
 FEWEST = 2  # samples that make a time base
@@ -47,16 +48,26 @@ class Signals:
         if data is None:
             return None
         series = Series(data.name, data.stamp, data.log_time, {"fluid_pressure": data["fluid_pressure"]})
-        series = increasing(finite(series, "fluid_pressure", self.warn), self.warn)
-        return series if len(series) else None
+        series = clocks.without_strays(finite(series, "fluid_pressure", self.warn), self.warn)
+        if not len(series):
+            raise DataError(
+                f"{self.path}: none of the {len(data)} pressures of {data.name} is a finite number; its sensor or "
+                "driver gives nothing."
+            )
+        if self._jumped:
+            series = clocks.beside(series, self.joints)
+        else:
+            series = series.select(clocks.longest(series, self.warn))
+        return increasing(series, self.warn)
 
     def commands(self) -> Series | None:
         """Valve commands at their recorded times, on the clock of the joint states; None when there are none."""
         data = self._topics.get(contract.COMMAND)
         if data is None:
             return None
-        stamp = on_clock_of(self.joints, data.log_time, self.warn)
-        series = finite(Series(data.name, stamp, data.log_time, {"data": data["data"]}), "data", self.warn)
+        places, log_time = clocks.after_turns(data.log_time, self._turns, int(self.joints.log_time[0]))
+        stamp = on_clock_of(self.joints, log_time, self.warn)
+        series = finite(Series(data.name, stamp, log_time, {"data": data["data"][places]}), "data", self.warn)
         return series if len(series) else None
 
     def description(self) -> dict[str, Any] | None:
@@ -75,12 +86,17 @@ class Signals:
         """Name of the joint and its states in increasing time, with a position in each."""
         data = self._topics[contract.JOINT_STATES]
         joint, series = joint_series(data, joint_name)
-        series = increasing(finite(series, "position", self.warn), self.warn)
+        series = clocks.without_strays(finite(series, "position", self.warn), self.warn)
+        part = clocks.longest(series, self.warn)
+        self._jumped = part != slice(0, len(series))
+        self._turns = int(np.count_nonzero(set_back(series.log_time) <= part.start))
+        series = increasing(series.select(part), self.warn)
         if contract.COMMAND not in self._topics and np.isfinite(series.values["effort"]).any():
             series = finite(series, "effort", self.warn)
         if len(series) < FEWEST:
             raise DataError(
-                f"{self.path}: {data.name} gives {len(series)} positions of '{joint}' out of {len(data)} messages."
+                f"{self.path}: {data.name} gives {len(series)} finite positions of '{joint}' in {len(data)} messages; "
+                "its sensor or driver gives nothing."
             )
         return joint, series
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +14,8 @@ from pneumo_ros.records.block import Channel, Integers
 from pneumo_ros.records.layout import Layout, Leaf, leaves
 from pneumo_ros.records.message_types import channel_types, deserialize
 
+SET_BACK = 100_000_000  # ns that recorded time falls back within a topic only when the recorder's clock was set
+
 
 class Part(NamedTuple):
     """Messages of one layout and their places among the messages of the topic, in the order of the file."""
@@ -22,11 +25,17 @@ class Part(NamedTuple):
     places: Integers
 
 
+def set_back(log_time: Integers) -> Integers:
+    """Places in recorded times (n,) [ns], in the order of the file, that are more than SET_BACK earlier than before."""
+    return np.flatnonzero(np.diff(log_time) < -SET_BACK) + 1
+
+
 class TopicData:
     """Messages of one topic in the order of recorded time; `data["header.stamp.sec"]` is a column, made when asked for.
 
-    A column has shape (n,) for numbers and strings, (n, k) for arrays and for sequences that are equally long in all
-    messages; else it holds one object per message. Strings are `str`, arrays of messages are lists.
+    Where the recorder's clock was set back, the order is that of the file. A column has shape (n,) for numbers and
+    strings, (n, k) for arrays and for sequences that are equally long in all messages; else it holds one object per
+    message. Strings are `str`, arrays of messages are lists.
     """
 
     def __init__(self, channel: Channel, log_time: Integers, parts: list[Part], odd: dict[int, bytes]) -> None:
@@ -35,8 +44,7 @@ class TopicData:
         self._store = channel_types(channel)
         self._leaves = {leaf.path: leaf for leaf in leaves(self._store, channel.type)}
         self._parts, self._odd = parts, odd
-        # Recorders write in the order of arrival; several files or clocks may still overlap.
-        self._order = None if np.all(log_time[1:] >= log_time[:-1]) else np.argsort(log_time, kind="stable")
+        self._order = _order(log_time)
         self.log_time = log_time if self._order is None else log_time[self._order]
 
     def __len__(self) -> int:
@@ -107,3 +115,11 @@ def _join(pieces: list[tuple[Integers, NDArray[Any]]], count: int, leaf: Leaf) -
     for places, values in pieces:
         column[places] = values
     return column
+
+
+def _order(log_time: Integers) -> Integers | None:
+    """Places in the order of time: recorders write as messages arrive, but several files may overlap a little."""
+    if np.all(log_time[1:] >= log_time[:-1]):
+        return None
+    bounds = [0, *set_back(log_time).tolist(), len(log_time)]
+    return np.concatenate([a + np.argsort(log_time[a:b], kind="stable") for a, b in pairwise(bounds)])

@@ -48,6 +48,16 @@ def write(path: Path, content: Streams, namespace: str = "", types: dict[str, st
     return path
 
 
+def write_in_order(path: Path, content: Streams) -> Path:
+    """A bag whose k-th messages of all topics were written one after another, whatever the recorder's clock said."""
+    with BagWriter(path, [BagTopic(f"/{name}", TYPES[name]) for name in content]) as writer:
+        for index in range(N):
+            for name, (times, rows) in content.items():
+                if index < len(rows):
+                    writer.write(f"/{name}", int(times[index]), rows[index])
+    return path
+
+
 def without(series: tuple[np.ndarray, list[bytes]], *missing: int) -> tuple[np.ndarray, list[bytes]]:
     """A stream that lost some of its messages."""
     kept = [index for index in range(len(series[0])) if index not in missing]

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from records.axis_bag import RNG, STAMP, START, TIME, VOLTAGE, N, streams, without, write
+from records.axis_bag import RNG, SIGNALS, STAMP, START, TIME, VOLTAGE, N, streams, without, write, write_in_order
 
+from pneumo_ros.errors import DataError
 from pneumo_ros.records import encoding, read_recording
 from pneumo_ros.records.contract import COMMAND, PRESSURE_A, PRESSURE_B
 
@@ -73,3 +74,78 @@ def test_joint_states_without_stamps_are_timed_by_the_recorder(tmp_path: Path) -
     recording = read_recording(write(tmp_path / "run", streams(np.zeros(N, dtype=np.int64), STAMP)))
     np.testing.assert_allclose(recording.time, TIME, atol=1e-12)
     assert any("all header stamps are equal" in warning for warning in recording.warnings)
+
+
+SECOND = 1_000_000_000
+HALF = np.where(np.arange(N) < 150, 0, SECOND)  # added from message 150 on, times a number of seconds
+
+
+@pytest.mark.parametrize(
+    ("stamps", "recorded", "words"),
+    [
+        (-3600, 0, "stamps jump by -3599.999 s while recorded times go on by 0.001 s at message 150 of 400"),
+        (3, 0, "stamps jump by +3.001 s while recorded times go on by 0.001 s"),
+        (-5, -5, "stamps and recorded times jump by -4.999 s together"),
+        (7200, 7200, "nothing is recorded for 7200.001 s (recording paused, or clock set forward)"),
+        (0, -20, "recorded times jump by -19.999 s while the stamps go on"),
+        (-0.2, -0.2, "stamps and recorded times jump by -0.199 s together"),
+        (-0.2, 0, "stamps jump by -0.199 s while recorded times go on by 0.001 s"),
+    ],
+)
+def test_clocks_that_were_set(tmp_path: Path, stamps: float, recorded: float, words: str) -> None:
+    """The longest part without a jump is used, with the commands of that part, and it is said."""
+    stamp, log = ((STAMP + HALF * shift).astype(np.int64) for shift in (stamps, recorded))
+    recording = read_recording(write_in_order(tmp_path / "run", streams(stamp, log)))
+    assert len(recording) == N - 150
+    assert recording.start_ns == stamp[150]
+    np.testing.assert_array_equal(recording.position, SIGNALS["position"][150:])
+    np.testing.assert_array_equal(recording.pressure_a, SIGNALS["pressure_a"][150:])
+    np.testing.assert_array_equal(recording.voltage, VOLTAGE[150:])
+    assert [words in warning for warning in recording.warnings].count(True) == 1, recording.warnings
+    assert any("250 messages, 0.249 s" in warning for warning in recording.warnings)
+
+
+def test_the_command_before_the_clock_was_set_back_stays_in_force(tmp_path: Path) -> None:
+    log = STAMP - 5 * HALF
+    content = streams(log, log)
+    content[COMMAND] = without(content[COMMAND], *range(100, 200))
+    recording = read_recording(write_in_order(tmp_path / "run", content))
+    np.testing.assert_array_equal(recording.voltage, np.where(np.arange(150, N) < 200, VOLTAGE[99], VOLTAGE[150:]))
+
+
+def test_recorded_times_that_jump_forward_do_not_matter(tmp_path: Path) -> None:
+    recording = read_recording(write_in_order(tmp_path / "run", streams(STAMP, STAMP + 60 * HALF)))
+    assert len(recording) == N
+    np.testing.assert_array_equal(recording.voltage, VOLTAGE)
+    assert any("+0.000 s to +60.000 s apart" in warning for warning in recording.warnings)
+
+
+def test_a_stray_stamp_costs_its_message_only(tmp_path: Path) -> None:
+    stamp = STAMP.copy()
+    stamp[200] += 3600 * SECOND
+    content = streams(STAMP)
+    content |= {name: (STAMP, rows) for name, (_, rows) in streams(stamp).items()}
+    recording = read_recording(write_in_order(tmp_path / "run", content))
+    assert len(recording) == N - 1
+    assert any("joint_states: 1 of 400 messages have a stamp far from" in warning for warning in recording.warnings)
+
+
+def test_pressures_stamped_by_another_clock(tmp_path: Path) -> None:
+    content = streams()
+    content[PRESSURE_B] = (STAMP, streams(STAMP + SECOND // 5)[PRESSURE_B][1])
+    said = " ".join(read_recording(write_in_order(tmp_path / "near", content)).warnings)
+    assert "chamber_b/pressure: its stamps are +0.200 s off from those of /joint_states" in said
+    content[PRESSURE_B] = (STAMP, streams(STAMP + 3600 * SECOND)[PRESSURE_B][1])
+    with pytest.raises(DataError, match=r"do not overlap.*chamber_b/pressure 3600.000 to 3600.399 s.*synchronise"):
+        read_recording(write_in_order(tmp_path / "far", content))
+
+
+def test_what_lies_in_a_gap_of_the_pressures_is_not_made_up(tmp_path: Path) -> None:
+    content = streams()
+    content[PRESSURE_A] = without(content[PRESSURE_A], *range(50, 70))
+    recording = read_recording(write(tmp_path / "run", content))
+    np.testing.assert_array_equal(recording.time, np.delete(TIME, range(50, 70)))
+    np.testing.assert_array_equal(recording.pressure_a, np.delete(SIGNALS["pressure_a"], range(50, 70)))
+    said = " ".join(recording.warnings)
+    assert "/chamber_a/pressure: 1 gap of more than 5 sample times (5 ms), the longest 0.021 s at 0.049 s" in said
+    assert "interpolated" not in said
