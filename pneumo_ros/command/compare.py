@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison, RunComparison
     from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
+    from pneumo_ros.report.chart import Report
 
 SHOWN_RUNS = 8  # more runs than these get one line each
 
@@ -50,7 +51,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
     _print(console, model, comparison, result)
     console.json(result)
-    report.write(console, comparison, result, model)
+    report.publish(console, lambda origin: _report(result, comparison, model, origin))
     return 0
 
 
@@ -66,6 +67,12 @@ def read_runs(bags: list[str], namespace: str | None, console: Console, force_dr
             console.note(f"{recording.name}: {warning}")
         runs.append(make_run(recording, force_driven))
     return runs
+
+
+def _report(result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]) -> "Report":
+    from pneumo_ros.report.comparison import comparison_report
+
+    return comparison_report(result, comparison, model, origin)
 
 
 def _print(console: Console, model: "Model", comparison: "Comparison", result: dict[str, Any]) -> None:

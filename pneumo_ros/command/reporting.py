@@ -12,8 +12,6 @@ from pneumo_ros.environment import require_libraries
 from pneumo_ros.files import check_new_folder, check_writable, whole_folder, write_whole
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import Comparison
-    from pneumo_ros.plant import Model
     from pneumo_ros.report.chart import Report
 
 
@@ -25,19 +23,13 @@ def add_report(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True)
 class ReportJob:
-    """Where report and figures go, or None; and which recordings they are about."""
+    """Where report and figures go, None where they are not wanted; and the files they are about."""
 
     page: Path | None
     figures: Path | None
     bags: tuple[str, ...]
     machine: str
     effects: tuple[str, ...]
-
-    def write(self, console: Console, comparison: "Comparison", result: dict[str, Any], model: "Model") -> None:
-        """Write what was asked for of a comparison."""
-        from pneumo_ros.report.comparison import comparison_report
-
-        self.publish(console, lambda origin: comparison_report(result, comparison, model, origin))
 
     def origin(self) -> dict[str, Any]:
         """JSON: the files with their hashes, the versions, the command line and the date."""
@@ -46,23 +38,31 @@ class ReportJob:
         return provenance(self.bags, self.machine, sys.argv[1:], self.effects)
 
     def publish(self, console: Console, make: "Callable[[dict[str, Any]], Report]") -> None:
-        """Write what was asked for of the report that `make` makes of its origin."""
+        """Write what was asked for; `make` builds the report, if it is wanted, from its origin."""
         if self.page is None and self.figures is None:
             return
         report = make(self.origin())
         if self.page is not None:
-            from pneumo_ros.report.page import page_html
-
-            text = page_html(report)
-            write_whole(self.page, text)
-            console.note(f"Report written to {self.page} ({len(text.encode()) / 1e6:.1f} MB)")
+            _write_page(report, self.page, console)
         if self.figures is not None:
-            from pneumo_ros.report.drawing import draw_charts
+            _write_figures(report, self.figures, console)
 
-            with whole_folder(self.figures) as folder:
-                folder.mkdir()
-                count = draw_charts(report.charts(), folder)
-            console.note(f"{count} figures written to {self.figures}, each as PNG and SVG")
+
+def _write_page(report: "Report", path: Path, console: Console) -> None:
+    from pneumo_ros.report.page import page_html
+
+    text = page_html(report)
+    write_whole(path, text)
+    console.note(f"Report written to {path} ({len(text.encode()) / 1e6:.1f} MB)")
+
+
+def _write_figures(report: "Report", path: Path, console: Console) -> None:
+    from pneumo_ros.report.drawing import draw_charts
+
+    with whole_folder(path) as folder, console.progress("Drawing") as progress:
+        folder.mkdir()
+        count = draw_charts(report.charts(), folder, progress)
+    console.note(f"{count} figures written to {path}, each as PNG and SVG")
 
 
 def prepare_report(options: argparse.Namespace) -> ReportJob:
@@ -74,7 +74,7 @@ def prepare_report(options: argparse.Namespace) -> ReportJob:
     return ReportJob(
         page=None if options.report is None else check_writable(options.report),
         figures=None if options.figures is None else check_new_folder(options.figures),
-        bags=(*options.bags, *(getattr(options, "fit", None) or ())),
+        bags=tuple(bag for role in ("bags", "fit", "holdout") for bag in getattr(options, role, None) or ()),
         machine=str(options.model),
         effects=tuple(options.effects),
     )

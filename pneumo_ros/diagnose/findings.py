@@ -31,16 +31,20 @@ def findings(result: Mapping[str, Any]) -> list[Finding]:
 
 def verdict(result: Mapping[str, Any]) -> str:
     """The whole comparison in one sentence."""
+    same = set(result.get("refit", {}).get("runs", ())) & {run["name"] for run in result["runs"]}
+    caution = " The model was refitted to recordings that it is scored on." if same else ""
     failing = [n for n, e in result["equations"].items() if e["explained_by_noise"] is False]
     worst = max((s["ratio_to_noise"] or 0.0 for s in result["signals"].values()), default=0.0)
     runs = f"{len(result['runs'])} recording" + ("s" if len(result["runs"]) != 1 else "")
     if not failing:
-        return f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge."
+        return (
+            f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge.{caution}"
+        )
     *others, last = (_words(name) for name in failing)
     names = f"{', '.join(others)} and {last}" if others else last
     verb = "fails" if len(failing) == 1 else "fail"
     size = f"predictions are up to {times(worst)} the sensor noise off"
-    return f"'{result['model']}' against {runs}: {names} {verb}; {size}."
+    return f"'{result['model']}' against {runs}: {names} {verb}; {size}.{caution}"
 
 
 def _equation(result: Mapping[str, Any], name: str) -> Finding:

@@ -3,14 +3,14 @@
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.diagnose.findings import findings, verdict
-from pneumo_ros.diagnose.wording import REGIMES, TARGETS, amount, percent, times
+from pneumo_ros.diagnose.wording import TARGETS, amount
 from pneumo_ros.report.chart import HeatMap, Report, Section
 from pneumo_ros.report.equations import equations_section
 from pneumo_ros.report.friction import friction_section
-from pneumo_ros.report.heat import heat
 from pneumo_ros.report.machine import machine_section
-from pneumo_ros.report.markup import Html, scrolling, tag
+from pneumo_ros.report.markup import tag
 from pneumo_ros.report.origin import origin_section
+from pneumo_ros.report.regimes import regimes_section
 from pneumo_ros.report.runs import runs_section, thinning
 
 if TYPE_CHECKING:
@@ -22,11 +22,10 @@ def comparison_report(
     result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]
 ) -> Report:
     """Everything `compare` has to show; other verbs put their sections beside these."""
-    judged = findings(result)
     return Report(
         title=f"Model '{result['model']}' against {_count(result)}",
         verdict=verdict(result),
-        good=all(one.level != "bad" for one in judged),
+        good=all(one.level != "bad" for one in findings(result)),
         sections=(
             overview_section(result),
             findings_section(result),
@@ -79,36 +78,3 @@ def findings_section(result: dict[str, Any]) -> Section:
         for one in findings(result)
     ]
     return Section("findings", "Where it fails", tag("ul", items, class_="findings"))
-
-
-def regimes_section(result: dict[str, Any]) -> Section:
-    """Regimes x signals and equations over all runs: error over noise, and share of the error."""
-    groups = {**result["signals"], **result["equations"]}
-    head = tag("tr", tag("th", "regime", scope="col"), tag("th", "time", scope="col", class_="number"),
-               [tag("th", TARGETS[name][0], scope="col") for name in groups])  # fmt: skip
-    rows = [_regime_row(result, name, groups) for name in result["regimes"]]
-    caption = tag("caption", "Error over noise in each regime, and the regime's share of the squared error")
-    inner = tag("table", caption, tag("thead", head), tag("tbody", rows), class_="heat")
-    meanings = [tag("li", tag("b", REGIMES[n]), f": {text}") for n, text in result["regimes"].items()]
-    notes = (
-        "A sample may be in several regimes, so only the shares of stick and slide add up to 100 %. The momentum is "
-        "judged while the piston slides: at rest friction takes any value up to its limit."
-    )
-    body = (tag("p", notes, class_="soft"), scrolling(inner, "Regimes"),
-            tag("details", tag("summary", "What the regimes are"), tag("ul", meanings)))  # fmt: skip
-    return Section("regimes", "Regimes", Html("".join(body)))
-
-
-def _regime_row(result: dict[str, Any], name: str, groups: dict[str, Any]) -> Html:
-    seconds = sum(run["regimes"].get(name, 0.0) * run["duration_s"] for run in result["runs"])
-    total = sum(run["duration_s"] for run in result["runs"])
-    cells = []
-    for found in groups.values():
-        share = found["regimes"].get(name)
-        if share is None or share["seconds"] < 0.05:
-            cells.append(tag("td", tag("small", "not judged" if seconds else "-"), class_="heat-none"))
-            continue
-        text = (tag("b", times(share["ratio_to_noise"])), " ", tag("small", f"{percent(share['share'])} of the error"))
-        cells.append(tag("td", text, class_=heat(share["ratio_to_noise"])))
-    time = tag("td", f"{percent(seconds / total)}", class_="number")
-    return tag("tr", tag("th", REGIMES[name], scope="row"), time, cells)

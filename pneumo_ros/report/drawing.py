@@ -1,7 +1,7 @@
 """The figures of a report as files, PNG and SVG, drawn by matplotlib from the same charts as the page."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,8 +23,13 @@ _INCH = 100.0  # pixels of the page
 _WIDTH = 9.0  # inches
 
 
-def draw_charts(figures: Sequence[Chart | HeatMap], folder: Path) -> int:
-    """Draw every figure into `folder` as NAME.png and NAME.svg; returns how many."""
+def draw_charts(
+    figures: Sequence[Chart | HeatMap], folder: Path, progress: Callable[[float], None] | None = None
+) -> int:
+    """Draw every figure into `folder` as NAME.png and NAME.svg; returns how many.
+
+    `progress` is called with the share done.
+    """
     import matplotlib as mpl
 
     settings: Any = {
@@ -33,7 +38,9 @@ def draw_charts(figures: Sequence[Chart | HeatMap], folder: Path) -> int:
         "axes.formatter.useoffset": False, "text.usetex": False, "text.parse_math": False,
     }  # fmt: skip
     with mpl.rc_context(settings):
-        for one in figures:
+        for k, one in enumerate(figures):
+            if progress:
+                progress(k / len(figures))
             drawn = _heat(one) if isinstance(one, HeatMap) else _chart(one)
             for kind, metadata in (("png", {}), ("svg", {"Date": None})):
                 drawn.savefig(folder / f"{one.name}.{kind}", dpi=_DPI, metadata=metadata)

@@ -7,6 +7,7 @@ import numpy as np
 from pneumo_ros.diagnose.wording import REGIMES, TARGETS, amount, percent, times
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Html, table, tag
+from pneumo_ros.report.regimes import regime_table
 from pneumo_ros.report.run_charts import run_charts
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def _run(k: int, one: dict[str, Any], run: "RunComparison", bucket: int) -> Sect
     size = f"{one['duration_s']:.1f} s, {one['samples']} samples at {rate:.0f} Hz, {one['windows']} windows. "
     back = tag("a", "Back to the overview", href="#overview")
     charts = run_charts(run, link, bucket)
-    body = Html(tag("p", size, back) + _errors(one) + _jumps(one, link))
+    body = Html(tag("p", size, back) + _errors(one) + _regimes(one) + _jumps(one, link))
     return Section(link, one["name"], body, charts=charts)
 
 
@@ -59,6 +60,11 @@ def _errors(one: dict[str, Any]) -> Html:
         row = (TARGETS[name][0], amount(e["residual_rms"], name), times(e["ratio_to_noise"]), "", "", "")
         rows.append((*row, percent(e["share"]), ""))
     return table(head, rows, "Errors of the predictions, residuals of the equations", numeric=range(1, 8))
+
+
+def _regimes(one: dict[str, Any]) -> Html:
+    inner = regime_table({**one["error"], **one["equations"]}, one["regimes"], one["name"])
+    return tag("details", tag("summary", "In which regime"), inner)
 
 
 def _jumps(one: dict[str, Any], link: str) -> Html:
