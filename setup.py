@@ -78,6 +78,7 @@ setup(
             "axis = pneumo_ros.ros.axis:main",
             "recorder = pneumo_ros.ros.recorder:main",
             "player = pneumo_ros.ros.player:main",
+            "experiment = pneumo_ros.ros.experiment:main",
         ],
     },
 )

@@ -38,9 +38,7 @@ class Fleet:
 
     def start(self, name: str, module: str, parameters: Mapping[str, object], namespace: str = "") -> None:
         """Start `python -m module` as node `name` with ROS parameters; numbers keep their kind: 1.0 is a double."""
-        given = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_yaml(value)}")]
-        remap = ["-r", f"__ns:=/{namespace}"] if namespace else []
-        command = [sys.executable, "-m", module, "--ros-args", *remap, *given]
+        command = [sys.executable, "-m", module, *ros_arguments(parameters, namespace)]
         environment = {**os.environ, **self._domain.environment, "ROS_LOG_DIR": str(self.logs.resolve())}
         with self._log(name).open("wb") as log:
             self._processes[name] = subprocess.Popen(
@@ -78,6 +76,12 @@ class Fleet:
 
     def _log(self, name: str) -> Path:
         return self.logs / f"{name}.log"
+
+
+def ros_arguments(parameters: Mapping[str, object], namespace: str = "") -> list[str]:
+    """Arguments that give a node parameters and a namespace; numbers keep their kind: 1.0 is a double."""
+    given = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_yaml(value)}")]
+    return ["--ros-args", *(["-r", f"__ns:=/{namespace}"] if namespace else []), *given]
 
 
 def _yaml(value: object) -> str:

@@ -23,12 +23,15 @@ def constant_voltage(model: Model, voltages: Sequence[float] = (), seconds: floa
     `seconds` of motion are wanted of each run; the way it may take is what the model predicts and a third. Raises
     UsageError for voltages that are not above 0 and at most 10 V, or so near that their names are the same.
     """
-    given = sorted(voltages)
-    right, left = (given or [limit + step for step in STEPS] for limit in dead_zone(model))
-    signed = [volts for pair in zip(right, left, strict=True) for volts in (pair[0], -pair[1])]
-    for volts in signed:
-        if not 0.0 < abs(volts) <= MAX_VOLTAGE:
-            raise UsageError(f"a voltage is {volts:g} V; allowed are numbers above 0 to {MAX_VOLTAGE:g} V")
+    for volts in voltages:
+        if not 0.0 < volts <= MAX_VOLTAGE:
+            raise UsageError(
+                f"a voltage is {volts:g} V; allowed is more than 0 to {MAX_VOLTAGE:g} V, run both ways"
+            )
+    right, left = dead_zone(model)
+    steps = [step for step in STEPS if max(right, left) + step <= MAX_VOLTAGE]
+    pairs = [(v, v) for v in sorted(voltages)] or [(right + step, left + step) for step in steps]
+    signed = [volts for to_right, to_left in pairs for volts in (to_right, -to_left)]
     room = room_of(model)
     trials = []
     for volts in signed:

@@ -94,4 +94,4 @@ def _number(given: dict[str, Any], name: str, unit: str) -> float:
 def commands_text(programme: Programme, commands: Iterable[tuple[float, float]]) -> str:
     """CSV: time [s] and voltage [V], a row at each change; `commands` are those of a rehearsal."""
     rows = "".join(f"{time:.4f},{volts:.6g}\n" for time, volts in commands)
-    return f"# {programme.experiment} for {programme.machine}, as rehearsed with its model\ntime,voltage\n{rows}"
+    return f"time,voltage\n# s,V: {programme.experiment} for {programme.machine}, as rehearsed with its model\n{rows}"

@@ -9,10 +9,15 @@ from pneumo_ros.experiment.outcome import Outcome
 from pneumo_ros.experiment.programme import Programme
 
 
-def described(outcome: Outcome, folder: Path) -> dict[str, Any]:
-    """One trial with SI units in the names, and where its recording is."""
-    keys = {"seconds": "seconds", "travel": "travel_m", "speed": "speed_m_s"}
-    return {keys.get(key, key): value for key, value in asdict(outcome).items()} | {"path": str(folder / outcome.name)}
+def trial_dict(outcome: Outcome) -> dict[str, Any]:
+    """One trial with units in the names."""
+    keys = {"seconds": "valve_open_s", "travel": "travel_m", "speed": "speed_m_s"}
+    return {keys.get(key, key): value for key, value in asdict(outcome).items()}
+
+
+def recorded(outcome: Outcome, folder: Path) -> dict[str, Any]:
+    """One trial, and where its recording is."""
+    return trial_dict(outcome) | {"path": str(folder / outcome.name)}
 
 
 def summary(
@@ -20,7 +25,7 @@ def summary(
 ) -> tuple[str, dict[str, Any]]:
     """A sentence, and the data; `failure` is what ended the experiment early, None if nothing did."""
     complete = failure is None and conductor.done
-    trials = [described(outcome, folder) for outcome in conductor.outcomes]
+    trials = [recorded(outcome, folder) for outcome in conductor.outcomes]
     said = "all trials are done" if complete else f"{failure}; the valve is closed"
     return f"{said}; {len(trials)} of {len(programme.trials)} recorded in {folder}", {
         "schema_version": 1,

@@ -14,7 +14,7 @@ from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.experiment.conductor import Conductor
 from pneumo_ros.experiment.outcome import AbortedError
 from pneumo_ros.experiment.programme_file import programme_text
-from pneumo_ros.experiment.summary import described, summary
+from pneumo_ros.experiment.summary import recorded, summary
 from pneumo_ros.files import write_whole
 from pneumo_ros.records.contract import COMMAND, JOINT_STATES
 from pneumo_ros.ros import messages, readers
@@ -97,7 +97,7 @@ class Experiment(AxisNode):
         elif before and not conductor.recording:
             self._takes.end(stamp)
         for outcome in conductor.outcomes[outcomes:]:
-            self._teller.tell(outcome.text, "outcome", **described(outcome, self.folder))
+            self._teller.tell(outcome.text, "outcome", **recorded(outcome, self.folder))
         return volts
 
     def _send(self, volts: float) -> None:
@@ -169,7 +169,8 @@ class Experiment(AxisNode):
     def _report(self) -> None:
         """The summary, beside the recordings if there are any."""
         said, content = summary(self.programme, self._conductor, self.folder, self.failure)
-        content["lost_messages"] = self._takes.lost
+        content["lost_messages"] = lost = self._takes.lost
+        said += f"; {lost} messages were lost" if lost else ""
         if self._begun:
             write_whole(self.folder / "experiment.json", json.dumps(content, indent=1) + "\n")
         self._teller.tell(said, "end", code=getattr(self.failure, "exit_code", 0), **content)

@@ -116,7 +116,7 @@ class Takes:
         self._sort_in(self._intake.take())
 
     def _sort_in(self, taken: list[Taken]) -> None:
-        """Keep what arrived. Raises DataError for a pressure that is no number."""
+        """Keep what arrived; a pressure that is no number is recorded, too, but ends the experiment."""
         for one in taken:
             name = self._names[one.topic]
             self.heard[name] = time.monotonic()
@@ -124,7 +124,7 @@ class Takes:
                 self._description = [Entry(0, 0, one.received, one.topic, one.payload)]
                 continue
             if name != JOINT_STATES and not math.isfinite(pressure := readers.pressure(one.payload)):
-                raise DataError(f"{one.topic} is {pressure}; look after the sensor")
+                self._failed(DataError(f"{one.topic} is {pressure}; look after the sensor"))
             stamp = stamp_of(one.payload, contract.TYPES[name]) or one.received
             log_time = stamp if self.simulated else one.received
             self._held.append(Entry(stamp, log_time, one.received, one.topic, one.payload))

@@ -1,0 +1,172 @@
+"""Experiments on a live plant, simulated or real: what to record to identify a machine or to tell effects apart.
+
+Without a name the experiments are listed. With one, the plant is taken through its trials inside the limits of its
+stroke, and each is recorded; --plan rehearses them with the model instead, --write makes a file of them, which can be
+changed and given in place of the name. The valve is closed, and the exit code is not 0, when the piston reaches an end
+stop or goes the wrong way, when the plant falls silent, and on Ctrl-C; what was recorded until then is kept.
+"""
+
+import argparse
+import math
+import time
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.chart import chart
+from pneumo_ros.command.conducting import conduct
+from pneumo_ros.command.console import Console, columns
+from pneumo_ros.environment import require_ros
+from pneumo_ros.errors import UsageError
+from pneumo_ros.files import check_writable, write_whole
+
+if TYPE_CHECKING:
+    from pneumo_ros.experiment.programme import Programme
+    from pneumo_ros.experiment.rehearsal import Rehearsal
+
+FORMATS = (".yaml", ".yml", ".csv")
+TIMEOUT = 200.0  # ms
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """NAME, what the trials are like, where to run them, and the common options."""
+    parser.add_argument("name", nargs="?", metavar="NAME", help="experiment, or a programme file that --write made")
+    parser.add_argument(
+        "--voltages", nargs="+", type=float, default=[], metavar="V",
+        help="magnitudes for constant-voltage, each run both ways (default: eight beyond the machine's dead zone)",
+    )  # fmt: skip
+    parser.add_argument("--seconds", type=float, metavar="S", help="length of each trial, from when the piston moves")
+    parser.add_argument("--plan", action="store_true", help="show the trials as the model predicts them; move nothing")
+    parser.add_argument("--write", metavar="FILE", help="write the programme (.yaml), or its voltages over time (.csv)")
+    parser.add_argument("--out", metavar="FOLDER", help="folder for the recordings (default: experiment_1, 2, ...)")
+    parser.add_argument("--namespace", default="", metavar="NS", help="of the plant, such as cylinder_1")
+    parser.add_argument("--joint", default="piston", metavar="NAME", help="joint in joint_states (default: piston)")
+    parser.add_argument(
+        "--timeout", type=float, default=TIMEOUT, metavar="MS",
+        help=f"silence of the plant that ends the experiment (default: {TIMEOUT:g} ms)",
+    )  # fmt: skip
+    add_model(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """List, rehearse, write, or run."""
+    if options.name is None:
+        return _list(console)
+    if options.write and Path(options.write).suffix not in FORMATS:
+        raise UsageError(f"--write {options.write}: it takes a name that ends in {', '.join(FORMATS)}")
+    if not (math.isfinite(options.timeout) and options.timeout > 0.0):
+        raise UsageError(f"--timeout is {options.timeout:g} ms; it takes a number above 0")
+    dry = options.plan or options.write
+    if not dry:
+        require_ros()
+    programme, rehearsal = _prepare(options)
+    if not dry:
+        return _live(options, console, programme, rehearsal)
+    console.say(plan_text(programme, rehearsal))
+    if options.write:
+        _write(options.write, programme, rehearsal)
+        console.note(f"Programme written to {options.write}; {_use(options.write)}")
+    console.json(plan_dict(programme, rehearsal))
+    return 1 if rehearsal.aborted else 0
+
+
+def _list(console: Console) -> int:
+    from pneumo_ros.experiment.catalogue import EXPERIMENTS
+
+    rows = [(f"  {name}", one.purpose) for name, one in EXPERIMENTS.items()]
+    console.say(
+        f"{columns(rows)}\n\nWhat one would do: pneumo experiment NAME --plan; on a live plant: without --plan."
+    )
+    listed = [{"name": name, "purpose": one.purpose} for name, one in EXPERIMENTS.items()]
+    console.json({"schema_version": 1, "experiments": listed})
+    return 0
+
+
+def _prepare(options: argparse.Namespace) -> "tuple[Programme, Rehearsal]":
+    """The programme, and what becomes of it on the model."""
+    from pneumo_ros.experiment.catalogue import make_programme
+    from pneumo_ros.experiment.programme_file import read_programme
+    from pneumo_ros.experiment.rehearsal import rehearse
+
+    if options.write:
+        check_writable(options.write)
+    model = chosen_model(options)
+    if Path(options.name).suffix in FORMATS[:2]:
+        if options.voltages or options.seconds is not None:
+            raise UsageError(f"--voltages and --seconds are not for a programme file; change them in {options.name}")
+        programme = read_programme(options.name)
+    else:
+        programme = make_programme(options.name, model, options.voltages, options.seconds)
+    return programme, rehearse(programme, model)
+
+
+def _write(path: str, programme: "Programme", rehearsal: "Rehearsal") -> None:
+    from pneumo_ros.experiment.programme_file import commands_text, programme_text
+
+    as_voltages = Path(path).suffix == ".csv"
+    write_whole(path, commands_text(programme, rehearsal.commands) if as_voltages else programme_text(programme))
+
+
+def _use(path: str) -> str:
+    verb = "simulate --input" if Path(path).suffix == ".csv" else "experiment"
+    return f"use it with: pneumo {verb} {path}"
+
+
+def plan_text(programme: "Programme", rehearsal: "Rehearsal") -> str:
+    """The trials as the model predicts them, and the path of the piston."""
+    from pneumo_ros.experiment.outcome import ENDS
+
+    rows = [("", "voltage", "speed", "way", "valve open", "ends because")]
+    for one in rehearsal.outcomes:
+        speed, way = f"{1e3 * one.speed:.1f} mm/s", f"{1e3 * one.travel:.0f} mm"
+        rows.append((one.name, one.voltage, speed, way, f"{one.seconds:.1f} s", ENDS[one.ended]))
+    total = f"{len(programme.trials)} trials, {_minutes(rehearsal.duration)}, {rehearsal.way:.1f} m of travel"
+    title = f"{programme.experiment}, as the model of '{programme.machine}' predicts it: {total}"
+    times, positions = zip(*rehearsal.path, strict=True)
+    drawing = chart(times, {"*": positions}, "m")
+    room = f"Room: {programme.low:g} to {programme.high:g} m; the end stop counts from +-{programme.end:g} m."
+    lines = [title, columns(rows, right=(1, 2, 3, 4)), "", drawing, "", room]
+    return "\n".join(lines + ([f"It would be aborted: {rehearsal.aborted}"] if rehearsal.aborted else []))
+
+
+def plan_dict(programme: "Programme", rehearsal: "Rehearsal") -> dict[str, Any]:
+    """The same as data, SI units."""
+    from pneumo_ros.experiment.summary import trial_dict
+
+    return {
+        "schema_version": 1, "experiment": programme.experiment, "machine": programme.machine,
+        "duration_s": rehearsal.duration, "travel_m": rehearsal.way, "aborted": rehearsal.aborted,
+        "trials": [trial_dict(one) for one in rehearsal.outcomes],
+    }  # fmt: skip
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.1f} minutes"
+
+
+def _live(options: argparse.Namespace, console: Console, programme: "Programme", rehearsal: "Rehearsal") -> int:
+    """Run it on a plant."""
+    if rehearsal.aborted:
+        console.note(f"Note: on the model this would be aborted: {rehearsal.aborted}")
+    folder = Path(options.out) if options.out else _next_folder()
+    console.note(f"{len(programme.trials)} trials, about {_minutes(rehearsal.duration)}; Ctrl-C closes the valve")
+    began = time.monotonic()
+    settings = {"output": str(folder.resolve()), "joint_name": options.joint}
+    settings["measurement_timeout"] = float(1e-3 * options.timeout)
+    code, result = conduct(programme, settings, options.namespace.strip("/"), console)
+    if code == 0:
+        console.say(f"Done in {_minutes(time.monotonic() - began)}. Next: {_next(programme.experiment, folder)}")
+    console.json({**result, "folder": str(folder), "exit_code": code})
+    return code
+
+
+def _next(experiment: str, folder: Path) -> str:
+    if experiment == "constant-voltage":
+        return f"pneumo identify {folder} --out identified.yaml"
+    return f"pneumo compare {folder}/*/"
+
+
+def _next_folder() -> Path:
+    return next(path for number in count(1) if not (path := Path(f"experiment_{number}")).exists())
