@@ -89,7 +89,8 @@ class Resolver:
             self.writers.setdefault(name, []).append((effect, key))
 
     def _check_names(self) -> None:
-        for state in self.states:
+        for state, effect in self.states.items():
+            self._check_begin(state, effect)
             for name in {f"d_{state}", f"r_{state}", f"{state}_m", f"{state}_n"} & set(self.states):
                 raise UsageError(
                     f"state {name} of effect {self.states[name].name} is too like state {state}; rename it"
@@ -98,6 +99,14 @@ class Resolver:
             if name in self.states or name in SIGNALS:
                 kind = "state" if name in self.states else "signal"
                 raise UsageError(f"parameter {name} of effect {owners[0]} is the name of a {kind}; choose another")
+
+    def _check_begin(self, state: str, effect: type[Effect]) -> None:
+        begin = effect.states[state].initial
+        numbers = [s for s, owner in self.states.items() if not isinstance(owner.states[s].initial, str)]
+        if isinstance(begin, str) and begin not in numbers:
+            raise UsageError(
+                f"state {state} of effect {effect.name} begins like {begin!r}. {unknown_name('state', begin, numbers)}"
+            )
 
     def parameter(self, name: str, effect: type[Effect] | None) -> str | None:
         """Kernel variable of the parameter an argument means: the effect's own, `effect__name`, or a unique one."""

@@ -89,11 +89,14 @@ class Parameter:
 
 @dataclass(frozen=True)
 class State:
-    """A state an effect integrates: unit, meaning and value at rest. A state in m/s is a velocity (see `compose`)."""
+    """A state an effect integrates: unit, meaning and value at rest. A state in m/s is a velocity (see `compose`).
+
+    `initial` may name another state, whose value this one has where it begins: a load moves with its piston.
+    """
 
     unit: str
     meaning: str
-    initial: float = 0.0
+    initial: float | str = 0.0
 
 
 @dataclass(frozen=True)

@@ -127,20 +127,33 @@ class Model:
         Raises UsageError for unknown or non-finite entries, for positions beyond the stroke, and for chambers without
         volume at an end of the stroke.
         """
-        rest = {s: effect.states[s].initial for effect in self.composition.effects for s in effect.states}
-        if not self.force_driven:
-            rest["p_a"] = rest["p_b"] = self["air.atmospheric_pressure"]
         for key, value in given.items():
-            if key not in rest:
-                raise UsageError(unknown_name("state", key, rest))
+            if key not in self.states:
+                raise UsageError(unknown_name("state", key, self.states))
             if not math.isfinite(value):
                 raise UsageError(f"initial {key} is {value}; it takes a finite number")
-            rest[key] = float(value)
-        self._check_volumes()
         reach = 0.5 * self["piston.stroke"]
-        if abs(rest["y"]) > 1.05 * reach:
-            raise UsageError(f"initial y is {rest['y']:g} m, outside the stroke of {-reach:g} to {reach:g} m")
-        return np.array([rest[s] for s in self.states])
+        if abs(given.get("y", 0.0)) > 1.05 * reach:
+            raise UsageError(f"initial y is {given['y']:g} m, outside the stroke of {-reach:g} to {reach:g} m")
+        return self._begin(given)
+
+    def continued(self, other: "Model", state: ArrayLike) -> Array:
+        """State vector (states,) that goes on from a `state` (states,) of another model.
+
+        States of the same name keep their values, those that `other` lacks begin as in `state`. Raises UsageError for
+        chambers without volume at an end of the stroke.
+        """
+        return self._begin(dict(zip(other.states, np.asarray(state, dtype=float).tolist(), strict=True)))
+
+    def _begin(self, given: Mapping[str, float]) -> Array:
+        self._check_volumes()
+        rest: dict[str, float | str] = {
+            s: effect.states[s].initial for effect in self.composition.effects for s in effect.states
+        }
+        if not self.force_driven:
+            rest["p_a"] = rest["p_b"] = self["air.atmospheric_pressure"]
+        begin = {s: given.get(s, rest[s]) for s in rest}
+        return np.array([float(begin[b] if isinstance(b, str) else b) for b in begin.values()])
 
     def _check_volumes(self) -> None:
         for side in "ab" if not self.force_driven else "":

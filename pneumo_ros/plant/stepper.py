@@ -49,11 +49,7 @@ class Stepper:
 
     def replace(self, model: Model) -> None:
         """Go on with another model: states of the same name keep their values, new ones start at rest."""
-        state = model.state()
-        for i, name in enumerate(model.states):
-            if name in self.model.states:
-                state[i] = self.state[self.model.states.index(name)]
-        self._adopt(model, state)
+        self._adopt(model, model.continued(self.model, self.state))
 
     def reset(self, state: NDArray[np.float64]) -> None:
         """Back to time 0 at `state` (states,); UsageError when it does not fit."""

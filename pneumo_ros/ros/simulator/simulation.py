@@ -23,7 +23,7 @@ class Simulation:
         self.total = 0  # since the start
         self.initial: dict[str, float] = {}
         self._held = np.zeros(self.parts)
-        self.replace(model)
+        self._adopt(model, model.state())
         self.reset()
 
     @property
@@ -33,12 +33,7 @@ class Simulation:
 
     def replace(self, model: Model) -> None:
         """Go on with another model: states of the same name keep their values, new ones start at rest."""
-        state = model.state()
-        if hasattr(self, "state"):
-            kept = [(i, self.model.states.index(s)) for i, s in enumerate(model.states) if s in self.model.states]
-            for here, there in kept:
-                state[here] = self.state[there]
-        self._adopt(model, state)
+        self._adopt(model, model.continued(self.model, self.state))
 
     def _adopt(self, model: Model, state: NDArray[np.float64]) -> None:
         self.model, self.state = model, state

@@ -2,7 +2,7 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-SHORTEST = 1e-6  # s: what is shorter, no step can tell from none
+RESOLVED = 2e-4  # s: shorter lags are a share of this one, which has the same delay and needs no shorter steps
 
 
 class FrictionLag(Effect):
@@ -10,13 +10,16 @@ class FrictionLag(Effect):
 
     time_constant = Parameter(5e-3, "s", "time constant tau of the film", low=0.0, high=1.0, neutral=0.0)
 
-    v_f = State("m/s", "velocity as the film sees it")
+    v_f = State("m/s", "velocity as the film sees it", initial="v")
 
-    source = "Hess and Soom 1990, Friction at a lubricated line contact operating at oscillating sliding velocities"
+    source = (
+        "Hess and Soom 1990, Friction at a lubricated line contact operating at oscillating sliding velocities; "
+        "Tran and Yanada 2013, Dynamic friction behaviors of pneumatic cylinders"
+    )
     signature = "the loop of friction over velocity widens with frequency"
 
     def equations(v, v_f, time_constant):
-        rate_v_f = 1.0 / max(time_constant, SHORTEST)
+        rate_v_f = 1.0 / max(time_constant, RESOLVED)
         der_v_f = rate_v_f * (v - v_f)
-        slip = v_f
+        slip = v + min(time_constant / RESOLVED, 1.0) * (v_f - v)
         return slip, der_v_f, rate_v_f
