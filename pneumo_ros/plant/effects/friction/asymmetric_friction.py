@@ -8,7 +8,10 @@ class AsymmetricFriction(Effect):
 
     ratio = Parameter(0.1, "1", "excess r of friction for negative velocity", low=-0.9, high=5.0, neutral=0.0)
 
-    source = "Andrighetto, Valdiero and Carlotto 2006, Study of the friction behavior in industrial pneumatic actuators"
+    source = (
+        "Canudas de Wit et al. 1995 (g may differ by direction); Andrighetto, Valdiero and Carlotto 2006, Study of the "
+        "friction behavior in industrial pneumatic actuators (maps of both directions)"
+    )
     signature = "two friction levels and a jump at reversal; unlike a load, it vanishes at rest"
 
     def equations(v, ratio):

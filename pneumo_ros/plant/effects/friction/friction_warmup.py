@@ -9,7 +9,7 @@ class FrictionWarmup(Effect):
     share = Parameter(0.2, "1", "share a of the friction that is lost when warm", low=-1.0, high=0.9, neutral=0.0)
     time_constant = Parameter(60.0, "s", "time constant tau", low=0.1, high=1e5)
 
-    source = "Armstrong-Helouvry 1991, Control of Machines with Friction, ch. 4"
+    source = "Armstrong-Helouvry 1991, Control of Machines with Friction (friction falls as a machine warms up)"
     signature = "the magnitude of friction decays with running time"
 
     def equations(t, share, time_constant):

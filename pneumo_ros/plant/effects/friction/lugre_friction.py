@@ -45,10 +45,14 @@ class LugreFriction(Effect):
         resistance = bristle_damping
         return friction, resistance, der_z, rate_z
 
-    def advance(z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness):
-        # |z| <= F_s / sigma_0 is an invariant of the exact equation; one step at high speed may overshoot it
+    def advance(
+        v, z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness,
+    ):  # fmt: skip
+        # |z| <= F_s / sigma_0 is an invariant of the exact equation; one step at high speed may overshoot it. A bristle
+        # that unloads keeps what it has, though the level may just have fallen (asymmetric friction at a reversal)
         level = friction_scale * max(static_friction, coulomb_friction) + friction_rise + max(static_rise, 0.0)
-        z = min(max(z, -level / bristle_stiffness), level / bristle_stiffness)
+        limit = level / bristle_stiffness if v * z >= 0.0 else abs(z)
+        z = min(max(z, -limit), limit)
         return z
 
     def caution(static_friction, coulomb_friction, bristle_damping, quadratic_drag__coefficient):

@@ -8,7 +8,7 @@ class PressureDependentFriction(Effect):
 
     coefficient = Parameter(3e-5, "N/Pa", "rise k of friction with mean pressure", low=0.0, high=1e-2, neutral=0.0)
 
-    source = "Belforte, Raparelli and Velardocchia 1993, Study of the behaviour of lip seals in pneumatic actuators"
+    source = "Belforte, Raparelli and Velardocchia 1993, Study of the behavior of lip seals in pneumatic actuators"
     signature = "friction follows the level of both chamber pressures"
 
     def equations(p_a, p_b, p_atm, coefficient):

@@ -8,7 +8,9 @@ class StribeckShape(Effect):
 
     exponent = Parameter(1.0, "1", "exponent delta of the Stribeck decay", low=0.3, high=4.0, neutral=2.0)
 
-    source = "Bo and Pavelescu 1982, The friction-speed relation and its influence on the critical velocity"
+    source = (
+        "Bo and Pavelescu 1982, The friction-speed relation and its influence on the critical velocity of stick-slip"
+    )
     signature = "shows only below about five Stribeck velocities"
 
     def equations(slip, stribeck_velocity, exponent):
