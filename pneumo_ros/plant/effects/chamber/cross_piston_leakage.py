@@ -8,7 +8,7 @@ class CrossPistonLeakage(Effect):
 
     conductance = Parameter(3e-10, "kg/(s Pa)", "leakage conductance G", low=0.0, high=1e-6, neutral=0.0)
 
-    source = "Beater 2007, Pneumatic Drives, Sec. 5.3"
+    source = "Richer and Hurmuzlu 2000, A high performance pneumatic force actuator system, Part I (leakage)"
     signature = "equal and opposite flow residuals that follow p_a - p_b"
 
     def equations(p_a, p_b, conductance):

@@ -2,17 +2,29 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-COLDEST = 50.0  # K, below which air is no gas
+SLOWEST = 1.0  # 1/s: below it the effect fades into the base model, whose gas leaves at the wall's temperature
+
+
+def exchange(
+    p: float, V: float, work: float, q: float, theta: float, T: float, R: float, gamma: float, rate: float
+) -> tuple[float, float]:
+    """Heat into the gas of a chamber [W] and rate of change of theta [K/s]; work = p V'."""
+    T_g = max(T + theta, 0.1 * T)
+    excess = max(gamma - 1.0, 1e-9)  # at gamma = 1 heat makes no pressure
+    kept = min(rate / SLOWEST, 1.0) * R * theta * min(q, 0.0)  # by gas that leaves colder than the base model says
+    heat = (gamma * kept - p * V * rate * theta / T_g) / excess
+    warming = (gamma * (R * T * q + kept) - (gamma - 1.0) * work - R * T_g * q) / (p * V)
+    return heat, T_g * warming - rate * theta
 
 
 class HeatExchange(Effect):
-    """Gas temperature T + theta relaxes to the wall's at a rate 1/tau and takes the pressure along.
+    """Full balance of energy: the gas has a temperature T_g = T + theta of its own, which the wall takes back to T.
 
-    theta' = T_g ((gamma R T q - (gamma - 1) p V') / (p V) - q R T_g / (p V)) - theta / tau with T_g = T + theta, from
-    the balances of mass and energy; the wall takes Q = -p V theta / ((gamma - 1) T_g tau).
+    With m = p V / (R T_g), Q = -m c_v theta / tau from the wall and gas that enters at T and leaves at T_g,
+    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V).
     """
 
-    rate = Parameter(2.0, "1/s", "rate 1/tau at which the gas takes the wall's temperature", 0.0, 1e3, neutral=0.0)
+    rate = Parameter(4.0, "1/s", "rate 1/tau at which the gas takes the wall's temperature", 0.0, 1e3, neutral=0.0)
 
     theta_a = State("K", "temperature of the gas in chamber a above the wall's")
     theta_b = State("K", "temperature of the gas in chamber b above the wall's")
@@ -24,17 +36,11 @@ class HeatExchange(Effect):
         y, v, p_a, p_b, theta_a, theta_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b,
         area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio, rate,
     ):  # fmt: skip
-        gamma, R, T = heat_capacity_ratio, gas_constant, temperature
-        pV_a = p_a * (volume_a + added_volume_a + area_a * y)
-        pV_b = p_b * (volume_b + added_volume_b - area_b * y)
-        T_a, T_b = max(T + theta_a, COLDEST), max(T + theta_b, COLDEST)
-        q_a, q_b = port_flow_a + flow_a, port_flow_b + flow_b
-        gain_a = (gamma * R * T * q_a - (gamma - 1.0) * p_a * area_a * v) / pV_a
-        gain_b = (gamma * R * T * q_b + (gamma - 1.0) * p_b * area_b * v) / pV_b
-        der_theta_a = T_a * (gain_a - q_a * R * T_a / pV_a) - rate * theta_a
-        der_theta_b = T_b * (gain_b - q_b * R * T_b / pV_b) - rate * theta_b
+        T, R, gamma = temperature, gas_constant, heat_capacity_ratio
+        V_a = volume_a + added_volume_a + area_a * y
+        V_b = volume_b + added_volume_b - area_b * y
+        work_a, work_b = p_a * area_a * v, -p_b * area_b * v
+        heat_a, der_theta_a = exchange(p_a, V_a, work_a, port_flow_a + flow_a, theta_a, T, R, gamma, rate)
+        heat_b, der_theta_b = exchange(p_b, V_b, work_b, port_flow_b + flow_b, theta_b, T, R, gamma, rate)
         rate_theta_a, rate_theta_b = rate, rate
-        excess = max(gamma - 1.0, 1e-9)  # at gamma = 1 heat makes no pressure
-        heat_a = -pV_a * theta_a * rate / (excess * T_a)
-        heat_b = -pV_b * theta_b * rate / (excess * T_b)
         return heat_a, heat_b, der_theta_a, der_theta_b, rate_theta_a, rate_theta_b

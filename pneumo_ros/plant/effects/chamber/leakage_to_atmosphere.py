@@ -9,7 +9,7 @@ class LeakageToAtmosphere(Effect):
     conductance_a = Parameter(1e-10, "kg/(s Pa)", "leakage conductance of chamber a", low=0.0, high=1e-6, neutral=0.0)
     conductance_b = Parameter(1e-10, "kg/(s Pa)", "leakage conductance of chamber b", low=0.0, high=1e-6, neutral=0.0)
 
-    source = "Beater 2007, Pneumatic Drives, Sec. 5.3"
+    source = "Beater 2007, Pneumatic Drives (leakage)"
     signature = "one chamber alone loses air, always outward"
 
     def equations(p_a, p_b, p_atm, conductance_a, conductance_b):
