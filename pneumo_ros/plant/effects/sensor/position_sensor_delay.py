@@ -2,21 +2,27 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-SHORTEST = 1e-6  # s: what is shorter, no step can tell from none
+RESOLVED = 2e-3  # s: shorter delays are a share of this one, which is alike and needs no shorter steps
 
 
 class PositionSensorDelay(Effect):
-    """The measured position lags by tau: y_m = y - e, e' = v - e / tau, a delay's first-order stand-in."""
+    """The measured position is that of a time tau ago: y_m = y - e, e'' = 12 (v - e / tau) / tau - 6 e' / tau.
+
+    That is the (2, 2) Pade approximation of the delay, written for what is lacking, so that it starts at rest anywhere.
+    """
 
     delay = Parameter(5e-3, "s", "delay tau of the position signal", low=0.0, high=0.2, neutral=0.0)
 
-    e = State("m", "how far the signal is behind")
+    behind = State("m", "how far e the signal is behind")
+    v_behind = State("m/s", "rate of change of e")
 
-    source = "first-order (0, 1) Pade approximation of a delay"
+    source = "Golub and Van Loan, Matrix Computations (Pade approximants of the exponential)"
     signature = "position lags the pressures; the residual follows jerk"
 
-    def equations(v, y_measured, e, delay):
-        rate_e = 1.0 / max(delay, SHORTEST)
-        der_e = v - rate_e * e
-        y_measured = y_measured - e
-        return y_measured, der_e, rate_e
+    def equations(v, y_measured, behind, v_behind, delay):
+        tau = max(delay, RESOLVED)
+        rate_v_behind = 6.0 / tau
+        der_behind = v_behind
+        der_v_behind = 12.0 * (v - behind / tau) / tau - rate_v_behind * v_behind
+        y_measured = y_measured - min(delay / RESOLVED, 1.0) * behind
+        return y_measured, der_behind, der_v_behind, rate_v_behind

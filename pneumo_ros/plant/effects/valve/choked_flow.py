@@ -4,9 +4,7 @@ from pneumo_ros.plant.effect import Effect, Parameter, atan, pi, sqrt
 
 NORMAL_DENSITY = 1.185  # kg/m3 at 100 kPa and 293.15 K, ISO 6358-1
 NORMAL_TEMPERATURE = 293.15  # K
-LINEAR = (
-    0.999  # pressure ratio above which the law is linear, so that noise is not rectified (ISO 6358-1, laminar range)
-)
+LINEAR = 0.999  # pressure ratio above which the law is linear: bent, it would rectify noise into flow
 
 
 def ratio_function(ratio: float, b: float) -> float:
@@ -32,11 +30,11 @@ class ChokedFlow(Effect):
     """
 
     blend = Parameter(1.0, "1", "share of the flow that follows ISO 6358", low=0.0, high=1.0, neutral=0.0)
-    conductance_filling = Parameter(5e-9, "m3/(s Pa)", "sonic conductance C of the filling edge", low=1e-12, high=1e-5)
-    conductance_exhaust = Parameter(7e-9, "m3/(s Pa)", "sonic conductance C of the exhaust edge", low=1e-12, high=1e-5)
+    conductance_filling = Parameter(5e-9, "m3/(s Pa)", "sonic conductance C of the filling edge", low=1e-11, high=1e-7)
+    conductance_exhaust = Parameter(7e-9, "m3/(s Pa)", "sonic conductance C of the exhaust edge", low=1e-11, high=1e-7)
     critical_ratio = Parameter(0.3, "1", "critical pressure ratio b", low=0.0, high=0.9)
 
-    source = "ISO 6358-1:2013; Beater 2007, Pneumatic Drives, Sec. 4.3"
+    source = "ISO 6358-1:2013; Beater 2007, Pneumatic Drives"
     signature = "at one voltage the flow error depends on the pressure ratio"
 
     def equations(

@@ -10,13 +10,13 @@ class ValveHysteresis(Effect):
 
     seen = State("V", "voltage that reaches the spool")
 
-    source = "play operator, Visintin 1994, Differential Models of Hysteresis; ISO 10770-1, hysteresis"
+    source = "play operator, Visintin 1994, Differential Models of Hysteresis; ISO 10041-1, hysteresis"
     signature = "flow depends on the direction in which the voltage changed last"
 
     def equations(voltage, seen, half_width):
         voltage = min(max(seen, voltage - half_width), voltage + half_width)
         return voltage
 
-    def advance(seen, U, voltage_offset, half_width):
-        seen = min(max(seen, U + voltage_offset - half_width), U + voltage_offset + half_width)
+    def advance(voltage):  # the equations have moved it already
+        seen = voltage
         return seen

@@ -9,7 +9,7 @@ class ValveInternalLeakage(Effect):
     conductance = Parameter(3e-11, "kg/(s Pa)", "conductance of either edge at null", low=0.0, high=1e-6, neutral=0.0)
     width = Parameter(0.5, "V", "opening at which it has faded to 1/e", low=0.01, high=10.0)
 
-    source = "Eryilmaz and Wilson 2006, Unified modeling and analysis of a proportional valve"
+    source = "Eryilmaz and Wilson 2006, Unified modeling and analysis of a proportional valve (leakage around null)"
     signature = "at zero volts both pressures drift to one level between supply and atmosphere"
 
     def equations(opening, p_a, p_b, p_s, p_atm, conductance, width):

@@ -8,7 +8,7 @@ class ValveNullOffset(Effect):
 
     offset = Parameter(0.1, "V", "voltage U_0 added to the command", low=-10.0, high=10.0, neutral=0.0)
 
-    source = "ISO 10770-1, null bias"
+    source = "ISO 10770-1, null bias (there of hydraulic valves)"
     signature = "left and right dead zones differ; creep at zero volts"
 
     def equations(offset):
