@@ -44,10 +44,10 @@ def parameters(result: dict[str, Any]) -> str:
 
 
 def _interval(one: dict[str, Any]) -> tuple[str, str]:
-    """Value and interval, to two figures of the interval's half width."""
+    """Value and interval, to two figures of the interval's half width, at least three of the value."""
     half = max(0.5 * (one["high"] - one["low"]), 1e-12 * abs(one["value"]))
     size = max(abs(one["value"]), half)
-    digits = min(max(math.floor(math.log10(size)) - math.floor(math.log10(half)) + 2, 2), 9)
+    digits = min(max(math.floor(math.log10(size)) - math.floor(math.log10(half)) + 2, 3), 9)
     return number(one["value"], digits), f"{number(one['low'], digits)} to {number(one['high'], digits)}"
 
 

@@ -25,27 +25,40 @@ def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequenc
     empty for what is no measurement but was known before.
     Infinite half widths, and NaN for correlations, belong to parameters that the residuals do not tell apart.
     The wider of two: independent errors of the residuals' own size (at least 1), and errors that are alike within a
-    run (cluster-robust sandwich, Liang and Zeger 1986, with Student's t over the runs), from six runs on.
+    run (jackknife over runs, Bell and McCaffrey 2002, with Student's t over the runs), from six runs on.
     """
     freedom = max(len(residual) - jacobian.shape[1], 1)
     variance = max(float(np.sum(weight * residual**2) / freedom), 1.0)
-    bread, seen = _inverse(jacobian.T @ (weight[:, None] * jacobian))
+    normal = jacobian.T @ (weight[:, None] * jacobian)
+    bread, seen = _inverse(normal, normal)
     half = student.ppf(0.975, freedom) * np.sqrt(variance * np.diag(bread))
-    names = sorted(set(groups) - {""})
-    if len(names) >= max(_FEW_GROUPS, jacobian.shape[1] + 2):
-        labels = np.array(groups)
-        scores = np.stack([jacobian[labels == g].T @ (weight * residual)[labels == g] for g in names])
-        meat = scores.T @ scores * (len(names) / (len(names) - 1.0))
-        robust = np.sqrt(np.diag(bread @ meat @ bread))
-        half = np.maximum(half, student.ppf(0.975, len(names) - jacobian.shape[1]) * robust)
+    robust, runs = _jackknife(jacobian, weight, residual, np.array(groups))
+    if runs >= max(_FEW_GROUPS, jacobian.shape[1] + 2):
+        half = np.maximum(half, student.ppf(0.975, runs - 1) * robust)
     sigma = np.where(seen, np.sqrt(np.diag(bread)), np.nan)
     return np.where(seen, half, np.inf), bread / np.outer(sigma, sigma)
 
 
-def _inverse(normal: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Inverse (p, p) within what the data see, and whether they see each parameter (p,) or only sums with others."""
-    size = np.sqrt(np.diag(normal))
-    size[size == 0.0] = 1.0
+def _jackknife(jacobian: Array, weight: Array, residual: Array, labels: NDArray[np.str_]) -> tuple[Array, int]:
+    """Deviations (p,) by leaving out one group after the other in the linearised problem, and how many there are."""
+    names = sorted(set(labels.tolist()) - {""})
+    normal, shifts = jacobian.T @ (weight[:, None] * jacobian), []
+    for name in names:
+        own = labels == name
+        part, gradient = weight[own, None] * jacobian[own], jacobian[own].T @ (weight * residual)[own]
+        inverse, _ = _inverse(normal - jacobian[own].T @ part, normal)
+        shifts.append(inverse @ gradient)
+    count = len(names)
+    return np.sqrt((count - 1.0) / max(count, 1) * np.sum(np.square(shifts), axis=0)), count
+
+
+def _inverse(normal: Array, whole: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Inverse (p, p) within what the data see, and whether they see each parameter (p,) or only sums with others.
+
+    `whole` is the normal matrix of all data, which tells how much is much.
+    """
+    size = np.sqrt(np.diag(whole))
+    size = np.where(size > 0.0, size, 1.0)
     value, vector = np.linalg.eigh(normal / np.outer(size, size))
     known = value > _BLIND * value[-1]
     seen = (np.abs(vector[:, ~known]) < 1e-3).all(axis=1)

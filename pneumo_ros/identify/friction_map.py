@@ -152,4 +152,4 @@ class _MapProblem:
 def _loose(value: float, half: float, unit: str) -> str:
     if not np.isfinite(half):
         return "these runs show only its sum with others"
-    return f"its interval is as wide as {value:.3g} +- {half:.3g} {unit}"
+    return f"these runs leave it anywhere between {value - half:.3g} and {value + half:.3g} {unit}"

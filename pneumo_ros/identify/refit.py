@@ -251,7 +251,10 @@ class _Problem:
         reduced, gradient = _eliminate(*self.blocks)
         reduced, gradient = reduced[self.active], gradient[self.active]
         shifts = _bootstrap(reduced, gradient - gradient.mean(0), len(theta))
-        deviation = np.maximum(shifts.std(0), 1e-12) * self.prior * _small_sample(int(np.sum(self.active)))
+        # what only the prior tells does not change when segments are drawn anew: the prior's own deviation counts there
+        posterior = np.sqrt(np.diag(np.linalg.inv(reduced.sum(0) + np.eye(len(theta)))))
+        drawn = shifts.std(0) * _small_sample(int(np.sum(self.active)))
+        deviation = np.maximum(drawn, posterior) * self.prior
         covariance = np.atleast_2d(np.cov(shifts.T))
         scale = np.where(np.diag(covariance) > 0.0, np.sqrt(np.diag(covariance)), np.nan)
         # a direction that only the prior holds is not determined by the data
