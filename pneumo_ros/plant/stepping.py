@@ -1,0 +1,48 @@
+"""Write one step of the integrator, whose scheme is told in `compose`."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pneumo_ros.plant.compose import Resolver
+
+
+def evaluate(states: list[str], rates: list[str], names: list[str], suffix: str, time: str) -> str:
+    """Line that evaluates all derivatives at the states with `suffix`."""
+    slopes = ", ".join([f"d_{s}" for s in states] + [f"r_{s}" for s in rates]) + ","
+    return f"{slopes} = derivatives({', '.join([*(s + suffix for s in states), 'U', time, *names])})"
+
+
+def half_step(s: str, rates: list[str]) -> str:
+    """Line of the first half step of state `s`, into `s_m`."""
+    return f"{s}_m = {s} + " + (f"half * damped(r_{s} * half) * d_{s}" if s in rates else f"half * d_{s}")
+
+
+def whole_step(s: str, rates: list[str], weight: str) -> str:
+    """Line of the whole step of state `s`, into `s_n`, from the derivatives at mid step."""
+    exponential = f"h * {weight}(r_{s} * h) * (d_{s} + r_{s} * ({s}_m - {s}))"
+    return f"{s}_n = {s} + " + (exponential if s in rates else f"h * d_{s}")
+
+
+def is_velocity(s: str, resolver: "Resolver") -> bool:
+    """Whether a state takes its step with the velocities: its unit is m/s."""
+    return resolver.states[s].states[s].unit == "m/s"
+
+
+def kick(velocities: list[str], rates: list[str]) -> list[str]:
+    """Lines that take the whole step of velocities, and their means to mid step."""
+    lines = [whole_step(s, rates, "damped") for s in velocities]
+    return lines + [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
+
+
+def step_text(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
+    """The inlined function `step`."""
+    velocities = [s for s in states if is_velocity(s, resolver)]
+    lines = ["half = 0.5 * h", "middle = t + half", evaluate(states, rates, names, "", "t")]
+    lines += [half_step(s, rates) for s in states]
+    lines.append(evaluate(states, rates, names, "_m", "middle"))
+    lines += kick(velocities, rates)
+    lines.append(evaluate(states, rates, names, "_m", "middle"))
+    lines += [whole_step(s, rates, "relaxation") for s in states if s not in velocities]
+    lines.append(f"return after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
+    body = "\n".join("    " + line for line in lines)
+    return f"@inline\ndef step({', '.join([*states, 'U', 't', 'h', *names])}):\n{body}"
