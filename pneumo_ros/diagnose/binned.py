@@ -10,6 +10,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 CLUSTER = 0.5  # s: values closer in time than this count as one when a mean's interval is drawn
+_CLUSTERS = 4  # fewer say next to nothing of the scatter between them
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Bins:
     high: Array
     centre: Array  # mean of the variable
     mean: Array
-    below: Array  # 95 % interval of the mean; NaN where the bin holds a single cluster
+    below: Array  # 95 % interval of the mean; NaN where the bin holds fewer than four clusters
     above: Array
     count: Array
     members: list[Index]  # which values each bin holds
@@ -68,7 +69,7 @@ def _mean(value: Array, cluster: Index) -> tuple[float, float]:
     """Mean and the half width of its 95 % interval."""
     mean = float(value.mean())
     sums = np.bincount(np.unique(cluster, return_inverse=True)[1].reshape(-1), value - mean)
-    if len(sums) < 2:
+    if len(sums) < _CLUSTERS:
         return mean, np.nan
     correction = len(sums) / (len(sums) - 1.0)
     deviation = float(np.sqrt(correction * np.sum(sums**2)) / len(value))

@@ -15,10 +15,11 @@ Array = NDArray[np.float64]
 def equations_section(result: dict[str, Any]) -> Section:
     """A part for every equation; those that noise explains are folded."""
     text = (
-        "Residual along the measured signals, all runs together: means over bins of each variable with their 95 % "
-        "interval, what noise alone scatters single windows by (dotted), and below the seconds each bin rests on. A "
-        "share is what the bins of one half of the recordings predict in the other half, beyond a constant. The "
-        "residual is what was measured minus what the model claims: a force or flow that the model lacks."
+        "Residual along the measured signals, all runs together: what was measured minus what the model claims, a force "
+        "or flow that the model lacks. Means over bins of each variable, with their 95 % interval where at least four "
+        "separate half seconds bear one; dotted, what noise alone scatters single windows by; below, the seconds each "
+        "bin rests on. A share is what the bins of one half of the recordings predict in the other half, beyond a "
+        "constant."
     )
     parts = tuple(_equation(name, found) for name, found in result["equations"].items())
     return Section("equations", "Equations", tag("p", text, class_="soft"), parts=parts)
@@ -47,7 +48,7 @@ def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
         np.array([np.nan if v is None else v for v in found[key]], dtype=float)
         for key in ("at", "mean", "low", "high", "noise", "seconds", "from", "to")
     )
-    x = x_factor * at
+    x, mean, low, high, noise = _broken(x_factor * begin, x_factor * end, x_factor * at, mean, low, high, noise)
     traces = (
         Trace("95 % of the mean", "first", "band", x, factor * low, factor * high),
         Trace("mean residual", "first", "line", x, factor * mean),
@@ -62,6 +63,13 @@ def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
     return Chart(
         f"{equation}-{variable}", f"Against {words}", share, f"{words} [{x_unit}]", panels, height=300, legend=False
     )
+
+
+def _broken(begin: Array, end: Array, x: Array, *columns: Array) -> list[Array]:
+    """x and the columns with a NaN between bins that do not touch: nothing is known there."""
+    apart = np.flatnonzero(begin[1:] > end[:-1] + 1e-9 * np.ptp(x)) + 1 if len(x) else np.empty(0, dtype=np.int64)
+    middle = 0.5 * (end[apart - 1] + begin[apart])
+    return [np.insert(x, apart, middle), *(np.insert(column, apart, np.nan) for column in columns)]
 
 
 def _coverage(begin: Array, end: Array, seconds: Array) -> Trace:

@@ -41,12 +41,13 @@ def _signal_chart(run: "RunComparison", name: str, link: str, bucket: int) -> Ch
         Trace("model", "model", "line", time, measured + error, resolution=fine),
         Trace("free run", "free", "line", time, measured + free, resolution=fine, hidden=True),
     ), share=1.6)  # fmt: skip
-    bottom = Panel(f"model - measured [{unit}]", (
+    bottom = Panel(f"error [{unit}]", (
         Trace("error", "error", "line", time, error, resolution=fine),
         Trace("2 x noise", "noise", "line", ends, np.array([2.0 * level] * 2)),
         Trace("2 x noise", "noise", "line", ends, np.array([-2.0 * level] * 2)),
     ))  # fmt: skip
-    text = f"Error {amount(found.rms, name)} rms, {times(found.ratio)} the noise of {amount(found.noise, name)}."
+    size = f"{amount(found.rms, name)} rms, {times(found.ratio)} the noise of {amount(found.noise, name)}"
+    text = f"Error, model minus measured: {size}."
     return Chart(
         f"{link}-{name}",
         f"{run.name}: {words}",

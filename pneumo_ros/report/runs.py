@@ -49,7 +49,7 @@ def _run(k: int, one: dict[str, Any], run: "RunComparison", bucket: int) -> Sect
 
 
 def _errors(one: dict[str, Any]) -> Html:
-    head = ("", "rms", "times noise", "noise", "largest", "fit", "share of all runs", "free run, rms")
+    head = ("", "rms", "rms / noise", "noise", "largest", "fit", "share", "free run")
     rows = []
     for name, e in one["error"].items():
         fit = "-" if e["fit_percent"] is None else f"{e['fit_percent']:.1f} %"
@@ -59,7 +59,12 @@ def _errors(one: dict[str, Any]) -> Html:
     for name, e in one["equations"].items():
         row = (TARGETS[name][0], amount(e["residual_rms"], name), times(e["ratio_to_noise"]), "", "", "")
         rows.append((*row, percent(e["share"]), ""))
-    return table(head, rows, "Errors of the predictions, residuals of the equations", numeric=range(1, 8))
+    return table(
+        head,
+        rows,
+        "Errors of the predictions and residuals of the equations; share: of the squared error of all runs",
+        numeric=range(1, 8),
+    )
 
 
 def _regimes(one: dict[str, Any]) -> Html:

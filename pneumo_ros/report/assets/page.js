@@ -10,7 +10,7 @@
 
   const CONFIG = {
     displaylogo: false, responsive: true, doubleClick: false, topojsonURL: "",
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "resetScale2d"],
+    modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "autoScale2d"]],
   };
 
   const groupOf = (div) => {

@@ -72,9 +72,10 @@ const Plots = (() => {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: width < 500 ? 11 : 12 },
       margin: { l: left, r: 12, t: chart.legend ? 28 : 10, b: 44 }, hovermode: "x", dragmode: coarse.matches ? false : "zoom",
       legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("axis"), activecolor: colour("accent") },
       hoverlabel: { bgcolor: colour("card"), bordercolor: colour("axis"), font: { color: ink } },
       xaxis: {
-        ...axis, title: { text: chart.x, standoff: 8 }, type: chart.logX ? "log" : "linear", anchor: chart.panels.length > 1 ? `y${chart.panels.length}` : "y",
+        ...axis, title: { text: chart.x, standoff: 8 }, hoverformat: chart.link ? ".3f" : ".4~g", type: chart.logX ? "log" : "linear", anchor: chart.panels.length > 1 ? `y${chart.panels.length}` : "y",
         zeroline: false, ...(range || chart.span ? { range: [...(range || chart.span)], autorange: false } : { autorange: true }),
       },
     };
@@ -85,7 +86,7 @@ const Plots = (() => {
         ? { tickmode: "array", tickvals: panel.ticks.map((_, i) => i), ticktext: panel.ticks, range: [panel.ticks.length - 0.3, -0.7], showgrid: false, zeroline: false }
         : { autorange: true };
       result[k ? `yaxis${k + 1}` : "yaxis"] = {
-        ...axis, title: { text: panel.title, standoff: 6 }, domain: [Math.max(top - height, 0), top], fixedrange: true, ...ticks,
+        ...axis, title: { text: panel.title, standoff: 6 }, domain: [Math.max(top - height, 0), top], hoverformat: ".5~g", fixedrange: true, ...ticks,
       };
       top -= height + gap;
     });
