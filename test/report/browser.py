@@ -36,8 +36,10 @@ def chromium() -> Iterator[Any]:
 
     program = next(found for name in NAMES if (found := shutil.which(name)))
     arguments = [*QUIET, *(["--no-sandbox"] if os.geteuid() == 0 else [])]
+    # A socket's path has 107 characters at most, and Chromium puts one below TMPDIR, which may lie deep in a checkout
+    environment = {name: value for name, value in os.environ.items() if name != "TMPDIR"}
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=arguments)
+        browser = playwright.chromium.launch(executable_path=program, args=arguments, env=environment)
         try:
             yield browser
         finally:
