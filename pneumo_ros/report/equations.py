@@ -16,10 +16,10 @@ def equations_section(result: dict[str, Any]) -> Section:
     """A part for every equation; those that noise explains are folded."""
     text = (
         "Residual along the measured signals, all runs together: what was measured minus what the model claims, a "
-        "force or flow that the model lacks. Means over bins of each variable, with their 95 % interval where at least four "
-        "separate half seconds bear one; dotted, what noise alone scatters single windows by; below, the seconds each "
-        "bin rests on. A share is what the bins of one half of the recordings predict in the other half, beyond a "
-        "constant."
+        "force or flow that the model lacks. Means over bins of each variable, with their 95 % interval where at least "
+        "four separate half seconds bear one; dotted, what noise alone scatters single windows by; below, the seconds "
+        "each bin rests on. A share is what the bins of one half of the recordings predict in the other half, beyond "
+        "a constant."
     )
     parts = tuple(_equation(name, found) for name, found in result["equations"].items())
     return Section("equations", "Equations", tag("p", text, class_="soft"), parts=parts)
