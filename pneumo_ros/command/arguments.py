@@ -42,6 +42,19 @@ class Parser(argparse.ArgumentParser):
         return f"unexpected argument '{given}'"
 
 
+def add_recordings(parser: argparse.ArgumentParser) -> None:
+    """--namespace, --joint and --read-as: which axis of a recording is meant, and how to read it."""
+    parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
+    parser.add_argument("--joint", metavar="NAME", help="the piston in joint_states, where these hold several joints")
+    parser.add_argument(
+        "--read-as",
+        metavar="WORD,WORD",
+        default="",
+        help="read recordings that are not in SI units and absolute pressures, or wired otherwise: bar, kPa, hPa, MPa, "
+        "psi; gauge; mm; swapped-chambers, reversed-position, reversed-voltage",
+    )
+
+
 def add_model(parser: argparse.ArgumentParser) -> None:
     """--model and --effects."""
     parser.add_argument("--model", metavar="FILE", default="axis", help="machine file, or the name of a shipped one")

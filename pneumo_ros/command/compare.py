@@ -8,8 +8,9 @@ one fails, the regimes, the variables and the intervals that hold most of the er
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, plain
+from pneumo_ros.command.recordings import read_runs
 from pneumo_ros.command.refitting import add_refit, refit_text, refitted
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.diagnose.findings import findings, verdict
@@ -18,7 +19,6 @@ from pneumo_ros.errors import UsageError
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison, RunComparison
-    from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
     from pneumo_ros.report.chart import Report
 
@@ -26,10 +26,10 @@ SHOWN_RUNS = 8  # more runs than these get one line each
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """BAG..., --horizon, --namespace, the refit, the report and the common options."""
+    """BAG..., --horizon, how to read recordings, the refit, the report and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files")
     parser.add_argument("--horizon", type=float, default=1.0, metavar="S", help="length of the windows (default: 1 s)")
-    parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
+    add_recordings(parser)
     add_refit(parser)
     add_model(parser)
     add_report(parser)
@@ -44,8 +44,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
         raise UsageError(f"--horizon {options.horizon:g} is no length of time; give seconds, such as --horizon 1")
     report = prepare_report(options)
     model = chosen_model(options)
-    runs = read_runs(options.bags, options.namespace, console, model.force_driven)
-    model, refit = refitted(options, console, model, runs, read_runs)
+    runs = read_runs(options.bags, options, console, model)
+    model, refit = refitted(options, console, model, runs)
     with console.progress("Comparing") as progress:
         comparison = compare(model, runs, options.horizon, lambda share, _: progress(share))
     result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
@@ -53,20 +53,6 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.json(result)
     report.publish(console, lambda origin: _report(result, comparison, model, origin))
     return 0
-
-
-def read_runs(bags: list[str], namespace: str | None, console: Console, force_driven: bool) -> "list[Run]":
-    """The recordings named on the command line, on uniform grids; what is wrong with them is noted."""
-    from pneumo_ros.identify.run import make_run
-    from pneumo_ros.records import read_recording
-
-    runs = []
-    for bag in bags:
-        recording = read_recording(bag, namespace)
-        for warning in recording.warnings:
-            console.note(f"{recording.name}: {warning}")
-        runs.append(make_run(recording, force_driven))
-    return runs
 
 
 def _report(result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]) -> "Report":

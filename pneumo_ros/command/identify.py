@@ -10,7 +10,7 @@ sentence says so; the exit code is then 1. A folder of recordings stands for all
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.identified import text
 from pneumo_ros.command.recordings import expanded, read_expanded
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--per-direction", action="store_true", help="fit the static map of each direction too, side by side"
     )
     parser.add_argument("--verbose", action="store_true", help="list every stretch that is refused, and why")
-    parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
+    add_recordings(parser)
     add_model(parser)
     add_report(parser)
     add_output(parser)
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     options.bags = list(paths)
     report = prepare_report(options)
     model = _with_added(chosen_model(options), options)
-    runs, passed = read_expanded(paths, options.namespace, console, model.force_driven)
+    runs, passed = read_expanded(paths, options, console, model)
     with console.progress("Identifying") as progress:
         found = identify(model, runs, progress=lambda share, _: progress(share))
     result: dict[str, Any] = summary(found, runs)

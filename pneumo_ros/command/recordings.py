@@ -1,5 +1,6 @@
 """Recordings named on the command line: folders of them expanded, what cannot be read said, names kept apart."""
 
+import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,10 @@ from pneumo_ros.errors import DataError
 
 if TYPE_CHECKING:
     from pneumo_ros.identify.run import Run
+    from pneumo_ros.plant import Model
+    from pneumo_ros.records import Recording
 
+ATMOSPHERE = 101325.0  # Pa, for machines that do not say
 _FILES = (".mcap", ".db3")
 
 
@@ -47,8 +51,34 @@ def _holds_files(folder: Path) -> bool:
     return (folder / "metadata.yaml").exists() or any(entry.suffix in _FILES for entry in folder.iterdir())
 
 
+def read_run(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "tuple[Recording, Run]":
+    """One recording as `options` say, and on a uniform grid; notes and errors as `read_runs`."""
+    from pneumo_ros.identify.plausible import check_run
+    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.records import read_recording
+    from pneumo_ros.records.corrections import corrected, parse_words
+
+    words = parse_words(options.read_as)
+    recording = read_recording(path, options.namespace, options.joint)
+    recording = corrected(recording, words, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
+    for warning in recording.warnings:
+        console.note(f"{recording.name}: {warning}")
+    run = make_run(recording, model.force_driven)
+    for note in check_run(model, run):
+        console.note(f"{recording.name}: {note}.")
+    return recording, run
+
+
+def read_runs(bags: Sequence[str], options: argparse.Namespace, console: Console, model: "Model") -> "list[Run]":
+    """The recordings named, on uniform grids; what is wrong with them is noted, or DataError says why it is too much.
+
+    `options` are those of `add_recordings`, by which recordings are read; `model` is what they should fit.
+    """
+    return [read_run(bag, options, console, model)[1] for bag in bags]
+
+
 def read_expanded(
-    paths: dict[str, bool], namespace: str | None, console: Console, force_driven: bool
+    paths: dict[str, bool], options: argparse.Namespace, console: Console, model: "Model"
 ) -> "tuple[list[Run], dict[str, str]]":
     """The runs, and a sentence for each recording of a folder that is passed over because it cannot be used.
 
@@ -59,7 +89,7 @@ def read_expanded(
         for done, (path, from_folder) in enumerate(paths.items()):
             progress(done / len(paths))
             try:
-                runs.append(_read(path, namespace, console, force_driven))
+                runs.append(read_run(path, options, console, model)[1])
             except DataError as problem:
                 if not from_folder:
                     raise
@@ -68,16 +98,6 @@ def read_expanded(
     if not runs:
         raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(passed.values())[-1]}")
     return _told_apart(runs, [path for path in paths if path not in passed]), passed
-
-
-def _read(path: str, namespace: str | None, console: Console, force_driven: bool) -> "Run":
-    from pneumo_ros.identify.run import make_run
-    from pneumo_ros.records import read_recording
-
-    recording = read_recording(path, namespace)
-    for warning in recording.warnings:
-        console.note(f"{recording.name}: {warning}")
-    return make_run(recording, force_driven)
 
 
 def _told_apart(runs: "list[Run]", paths: Sequence[str]) -> "list[Run]":

@@ -1,18 +1,16 @@
 """The options that refit a model before it is used, and the table of what moved."""
 
 import argparse
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.recordings import read_runs
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable
 
 if TYPE_CHECKING:
     from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
-
-Reader = Callable[[list[str], str | None, Console, bool], "list[Run]"]
 
 
 def add_refit(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +23,7 @@ def add_refit(parser: argparse.ArgumentParser) -> None:
 
 
 def refitted(
-    options: argparse.Namespace, console: Console, model: "Model", runs: "list[Run]", read: Reader
+    options: argparse.Namespace, console: Console, model: "Model", runs: "list[Run]"
 ) -> "tuple[Model, dict[str, Any] | None]":
     """The model as the options want it, and the JSON of its refit; UsageError for --out without a refit."""
     if not (options.refit or options.fit):
@@ -38,7 +36,7 @@ def refitted(
 
     if options.out:
         check_writable(options.out)
-    used = read(options.fit, options.namespace, console, model.force_driven) if options.fit else runs
+    used = read_runs(options.fit, options, console, model) if options.fit else runs
     with console.progress("Refitting") as progress:
         found = refit(model, used, progress=lambda share, _: progress(share))
     if options.out:

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros import __version__
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, program
 from pneumo_ros.command.inputs import FORMS, parse_drive
+from pneumo_ros.command.recordings import read_run
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
 
@@ -55,6 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, metavar="S", help=f"how long (default: the input, else {SECONDS:g})")
     parser.add_argument("--rate", type=float, metavar="HZ", help=f"samples per second (default: {RATE:g})")
     parser.add_argument("--position", type=float, metavar="M", help="where the piston starts (default: 0)")
+    add_recordings(parser)
     add_model(parser)
     add_output(parser)
 
@@ -65,7 +67,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
     check_new_folder(options.out)
     model = chosen_model(options)
-    plan = make_plan(options, model)
+    plan = make_plan(options, model, console)
     states = simulate(model, plan, console)
     signals = recorded(model, plan, states)
     description = {"schema_version": 1, "version": __version__, "model": model.as_dict(), "seed": None}
@@ -87,14 +89,18 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-def make_plan(options: argparse.Namespace, model: "Model") -> Plan:
+def make_plan(options: argparse.Namespace, model: "Model", console: Console) -> Plan:
     """What the options ask for; UsageError for lengths and rates that make no sense."""
     for name, value in (("--seconds", options.seconds), ("--rate", options.rate)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise UsageError(f"{name} is {value:g}; it takes a number above 0")
     path = Path(options.input)
     replays = path.is_dir() or path.suffix in (".mcap", ".db3")
-    return _replay(options, model) if replays else _drive(options, model)
+    if replays:
+        return _replay(options, model, console)
+    if options.namespace or options.joint or options.read_as:
+        raise UsageError(f"--namespace, --joint and --read-as go with a recording; --input is {options.input}")
+    return _drive(options, model)
 
 
 def _drive(options: argparse.Namespace, model: "Model") -> Plan:
@@ -110,18 +116,16 @@ def _drive(options: argparse.Namespace, model: "Model") -> Plan:
     return Plan(volts[:-1], 1, dt, model.state(y=options.position or 0.0), drive.text, commands)
 
 
-def _replay(options: argparse.Namespace, model: "Model") -> Plan:
+def _replay(options: argparse.Namespace, model: "Model", console: Console) -> Plan:
     """The plan for a recording: its commands at the times they came, from the state it starts in."""
     import numpy as np
 
-    from pneumo_ros.identify.run import PARTS, make_run
+    from pneumo_ros.identify.run import PARTS
     from pneumo_ros.identify.start import start_states
-    from pneumo_ros.records import read_recording
 
-    recording = read_recording(options.input)
+    recording, run = read_run(options.input, options, console, model)
     if options.rate is not None:
         raise UsageError(f"leave out --rate: a replay keeps the {1.0 / recording.sample_time:.0f} Hz of its recording")
-    run = make_run(recording, model.force_driven)
     samples = len(run) - 1 if options.seconds is None else round(options.seconds / run.sample_time)
     if not 1 <= samples < len(run):
         raise UsageError(f"--seconds is {options.seconds:g}; {recording.name} lasts {recording.duration:g} s")

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
 from pneumo_ros.records import Recording
+from pneumo_ros.records.unfit import check_use
 
 Array = NDArray[np.float64]
 
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
-_FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
-_VACUUM = 1e4  # Pa: no chamber of a pneumatic axis is emptier
+_MILLIMETRES = 20.0  # half strokes: farther, positions are in mm, or in nothing at all
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,8 @@ def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
     slowly, or holds no pressures, no absolute ones or no input for the kind asked for.
     """
     time = recording.time
-    _check_time(recording)
     driven = recording.force_driven if force_driven is None else force_driven
-    _check_input(recording, driven)
+    check_use(recording, driven)
     counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
     intervals = int(counts.sum())
     step = float((time[-1] - time[0]) / intervals)
@@ -95,43 +94,13 @@ def check_position(model: Model, run: Run) -> None:
     """Raises DataError when a run leaves the stroke of `model` by more than a stop can give way."""
     reach = 0.5 * model["piston.stroke"]
     farthest = int(np.argmax(np.abs(run.position)))
-    if abs(run.position[farthest]) > 1.05 * reach:
+    most = abs(run.position[farthest])
+    if most > 1.05 * reach:
+        unit = "; if it is in mm, type --read-as mm" if _MILLIMETRES * reach < most < 1050.0 * reach else ""
         raise DataError(
             f"{run.name}: the position is {run.position[farthest]:.4g} m at {run.time[farthest]:.3f} s, outside the "
-            f"stroke of {model.name}, {-reach:g} to {reach:g} m; positions are in m from mid stroke, and the machine "
-            "file sets piston.stroke"
-        )
-
-
-def _check_time(recording: Recording) -> None:
-    if len(recording.time) < _FEWEST:
-        raise DataError(f"{recording.name} holds {len(recording.time)} samples; at least {_FEWEST} are needed")
-    if recording.sample_time > _SLOWEST:
-        raise DataError(
-            f"{recording.name} is sampled every {1e3 * recording.sample_time:.3g} ms; valve and friction act within "
-            f"milliseconds: record at {1.0 / _SLOWEST:g} Hz or more, better 1 kHz"
-        )
-
-
-def _check_input(recording: Recording, force_driven: bool) -> None:
-    if force_driven and recording.effort is None:
-        raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
-    if not force_driven and (recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None):
-        raise DataError(
-            f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
-            "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
-        )
-    if not force_driven:
-        _check_pressure(recording, "chamber_a/pressure", _array(recording.pressure_a))
-        _check_pressure(recording, "chamber_b/pressure", _array(recording.pressure_b))
-
-
-def _check_pressure(recording: Recording, topic: str, pressure: Array) -> None:
-    lowest = int(np.argmin(pressure))
-    if pressure[lowest] < _VACUUM:
-        raise DataError(
-            f"{recording.name}: {topic} is {pressure[lowest]:.4g} Pa at {recording.time[lowest]:.3f} s; absolute "
-            "pressures in Pa are needed: add the atmosphere's to gauge pressures, multiply bar by 1e5"
+            f"stroke of {model.name}, {-reach:g} to {reach:g} m{unit}; positions are in m from mid stroke, and the "
+            "machine file sets piston.stroke"
         )
 
 

@@ -53,14 +53,28 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
 def _require(signals: Signals, commands: Series | None, *pressures: Series | None) -> None:
     """Raises DataError unless this is a valve-driven axis with pressures, or a force-driven one."""
     if commands is None and not np.isfinite(signals.joints.values["effort"]).all():
-        lacking = f"{contract.COMMAND} or the effort in {contract.JOINT_STATES}"
+        absent, lacking = [contract.COMMAND], f"{contract.COMMAND} or the effort in {contract.JOINT_STATES}"
     elif commands is not None and None in pressures:
         names = (contract.PRESSURE_A, contract.PRESSURE_B)
-        lacking = " and ".join(name for name, series in zip(names, pressures, strict=True) if series is None)
+        absent = [name for name, series in zip(names, pressures, strict=True) if series is None]
+        lacking = " and ".join(absent)
     else:
         return
     there = ", ".join(signals.topics)
-    raise DataError(f"{signals.path} lacks {lacking}. There is: {there}. Needed: {NEEDED}.")
+    raise DataError(f"{signals.path} lacks {lacking}. There is: {there}. Needed: {NEEDED}.{_renamed(signals, absent)}")
+
+
+def _renamed(signals: Signals, absent: list[str]) -> str:
+    """Sentence that tells how to use a topic that was recorded under another name; empty when there is none."""
+    others = signals.like(absent[0])
+    if not others:
+        return ""
+    target = f"/{signals.namespace}/{absent[0]}" if signals.namespace else f"/{absent[0]}"
+    return (
+        f" If it is {' or '.join(others)}, start what publishes it with --ros-args -r {others[0]}:={target}; to rename "
+        f"it in this recording, record again what comes from: player --ros-args -p input:={signals.path} "
+        f"-r {others[0]}:={target}"
+    )
 
 
 def _cut(signals: Signals, pressures: list[Series], commands: Series | None) -> Series:

@@ -32,6 +32,7 @@ class Signals:
             raise DataError(" ".join([f"{path} holds no messages.", *self.warnings]))
         self.namespace = choose_namespace(path, types, namespace)
         check_types(types, self.namespace)
+        self._types = types
         self._topics = {
             name: data for topic, data in found.items() if (name := _name(topic, self.namespace)) is not None
         }
@@ -41,6 +42,10 @@ class Signals:
     def topics(self) -> list[str]:
         """Names of the axis' topics, as recorded."""
         return sorted(data.name for data in self._topics.values())
+
+    def like(self, name: str) -> list[str]:
+        """Recorded topics of no known name that have the type of the contract's topic `name`."""
+        return sorted(t for t, kind in self._types.items() if kind == contract.TYPES[name] and not contract.split(t))
 
     def pressure(self, name: str) -> Series | None:
         """Pressures of one topic in increasing time; None when there are none."""

@@ -9,7 +9,7 @@ from records.axis_bag import SIGNALS, STAMP, START, TIME, VOLTAGE, N, streams, w
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import encoding, read_recording, write_recording
-from pneumo_ros.records.contract import COMMAND, DESCRIPTION, JOINT_STATES, PRESSURE_A, TYPES
+from pneumo_ros.records.contract import COMMAND, DESCRIPTION, JOINT_STATES, PRESSURE_A, PRESSURE_B, TYPES
 
 
 def test_arrays_come_back_as_they_were_written(tmp_path: Path) -> None:
@@ -113,3 +113,13 @@ def test_a_topic_of_another_type(tmp_path: Path) -> None:
         DataError, match="valve/command was recorded as std_msgs/msg/String; it must be std_msgs/msg/Float64"
     ):
         read_recording(write(tmp_path / "run", content, types=types))
+
+
+def test_a_topic_under_another_name_is_pointed_at(tmp_path: Path) -> None:
+    content = streams()
+    content["rod_side"] = content.pop(PRESSURE_B)
+    path = write(tmp_path / "run", content, "/axis", {**TYPES, "rod_side": TYPES[PRESSURE_A]})
+    with pytest.raises(DataError, match="lacks chamber_b/pressure") as caught:
+        read_recording(path)
+    assert "player --ros-args -p input:=" in str(caught.value)
+    assert str(caught.value).endswith("-r /axis/rod_side:=/axis/chamber_b/pressure")

@@ -1,0 +1,96 @@
+"""Recordings that can be read and not be used, as far as they show it without a model."""
+
+import numpy as np
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.records.corrections import PRESSURE_UNITS
+from pneumo_ros.records.recording import Array, Recording
+
+_FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
+_VACUUM, _MOST = 1e4, 1e7  # Pa: no chamber of a pneumatic axis is emptier, or fuller
+_USUAL = 5e4  # Pa, which the pressures of a running axis reach, gauge or absolute
+_SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
+# the highest value of a running axis, 0.9 to 13 bar, in each unit; the ranges of the units do not overlap much
+_HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 110.0), ("kPa", 1300.0), ("hPa", _VACUUM))
+
+
+def check_use(recording: Recording, force_driven: bool) -> None:
+    """Raises DataError for a recording that is too short, sampled too slowly, or lacks what drives the axis.
+
+    A valve-driven one must hold two chamber pressures, and these must have the size of absolute pressures in Pa.
+    """
+    _check_time(recording)
+    if force_driven and recording.effort is None:
+        raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
+    if not force_driven and (recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None):
+        raise DataError(
+            f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
+            "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
+        )
+    if not force_driven:
+        pressures = {"chamber_a/pressure": recording.pressure_a, "chamber_b/pressure": recording.pressure_b}
+        given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
+        for topic, pressure in given.items():
+            _check_size(recording, topic, pressure, list(given.values()))
+
+
+def _check_time(recording: Recording) -> None:
+    if len(recording.time) < _FEWEST:
+        raise DataError(f"{recording.name} holds {len(recording.time)} samples; at least {_FEWEST} are needed")
+    if recording.sample_time > _SLOWEST:
+        raise DataError(
+            f"{recording.name} is sampled every {1e3 * recording.sample_time:.3g} ms; valve and friction act within "
+            f"milliseconds: record at {1.0 / _SLOWEST:g} Hz or more, better 1 kHz"
+        )
+
+
+def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Array]) -> None:
+    """Raises DataError unless `pressure` has the size of absolute pressures in Pa; `both` have a say in the advice."""
+    lowest, highest = float(pressure.min()), float(pressure.max())
+    if lowest >= _VACUUM and highest <= _MOST:
+        return
+    at = recording.time[int(np.argmin(pressure) if lowest < _VACUUM else np.argmax(pressure))]
+    span = f"{recording.name}: {topic} is {lowest:.4g} to {highest:.4g}"
+    wanted = "absolute pressures in Pa are needed"
+    if highest > _MOST:
+        raise DataError(f"{span} Pa, more than pneumatics bear; {wanted}: look at the unit, and at --read-as if given")
+    if lowest == highest or (np.mean(pressure < 0.0) > 0.2 and highest < _VACUUM):
+        raise DataError(f"{span} in {len(pressure)} samples: its sensor gives no signal; look at its plug and supply")
+    if highest < _USUAL:
+        unit = _unit(both if all(one.max() < _VACUUM for one in both) else [pressure])
+        raise DataError(f"{span}, as it would be in {_named(unit, both)}; {wanted}: {_advice(unit, both)}")
+    if np.mean(pressure < _VACUUM) < _SEVERAL:
+        many = int(np.count_nonzero(pressure < _VACUUM))
+        raise DataError(
+            f"{recording.name}: {topic} is {lowest:.4g} Pa at {at:.3f} s, emptier than a chamber can be, in {many} of "
+            f"{len(pressure)} samples: its sensor drops out; look at its plug, and cut these samples out"
+        )
+    raise DataError(
+        f"{recording.name}: {topic} falls to {lowest:.4g} Pa at {at:.3f} s, where a vented chamber has the "
+        f"atmosphere's 1e5 Pa: these are gauge pressures; {wanted}: type --read-as gauge, or add the atmosphere's "
+        "where they are published"
+    )
+
+
+def _unit(pressures: list[Array]) -> str:
+    """The unit in which the highest pressure is one of a running axis."""
+    highest = max(float(one.max()) for one in pressures)
+    return next((unit for unit, most in _HIGHEST if highest < most), "hPa")
+
+
+def _named(unit: str, both: list[Array]) -> str:
+    return f"{unit} gauge" if _gauge(unit, both) else unit
+
+
+def _gauge(unit: str, both: list[Array]) -> bool:
+    """Whether pressures in `unit` fall so low that they cannot be absolute."""
+    return min(float(one.min()) for one in both) * PRESSURE_UNITS[unit] < _USUAL
+
+
+def _advice(unit: str, both: list[Array]) -> str:
+    publish = f"multiply {unit} by {PRESSURE_UNITS[unit]:.6g} where it is published"
+    if any(one.max() >= _VACUUM for one in both):  # one in Pa, the other not: no option can tell which
+        return publish
+    gauge = _gauge(unit, both)
+    more = ", and add the atmosphere's 1e5 Pa" if gauge else ""
+    return f"type --read-as {unit}{',gauge' if gauge else ''}, or {publish}{more}"
