@@ -1,7 +1,10 @@
 """The integrator neither feeds nor damps: what rings, rings as long as it should; gas and mass are conserved."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from plant.user_files import composed, one
 
 from pneumo_ros.plant import Library, Model, load_model
 
@@ -81,3 +84,22 @@ def test_isothermal_chamber_keeps_count_of_its_mass() -> None:
     gained, flowed = np.diff(mass)[held].sum(), 0.5 * (flow[1:] + flow[:-1])[held].sum() * 1e-4
     assert gained == pytest.approx(flowed, rel=1e-5)
     assert abs(flowed) > 1e-6
+
+
+def test_heat_raises_the_pressure_by_gamma_less_one_over_the_volume(tmp_path: Path) -> None:
+    """p' = (gamma - 1) Q / V: first law at constant volume."""
+    heaters = "heat_a, heat_b = 30.0 + 0.0 * v, -20.0 + 0.0 * v"
+    model = composed(tmp_path, one("v", heaters, "return heat_a, heat_b"), "own")
+    slope = model.derivatives(model.state(y=0.3), 0.0)[0, 2:4]
+    volumes = np.array([5.1e-4 + 0.3 * 4.1e-4, 4.0e-4 - 0.3 * 3.0e-4])
+    assert slope == pytest.approx(0.4 * np.array([30.0, -20.0]) / volumes, rel=1e-12)
+
+
+def test_added_volume_and_mass_take_their_place(tmp_path: Path) -> None:
+    body = "added_volume_a, added_volume_b, added_mass = 1e-4 + 0.0 * v, 2e-4 + 0.0 * v, 5.0 + 0.0 * v"
+    model = composed(tmp_path, one("v", body, "return added_volume_a, added_volume_b, added_mass"), "own")
+    state = {"v": 0.1, "p_a": 3e5, "p_b": 4e5, "z": 5e-5}
+    axis = load_model("axis")
+    more, base = (m.derivatives(m.state(**state), 3.0)[0] for m in (model, axis))
+    assert more[1] == pytest.approx(0.5 * base[1], rel=1e-12)
+    assert more[2:4] == pytest.approx(base[2:4] * [5.1e-4 / 6.1e-4, 4.0e-4 / 6.0e-4], rel=1e-12)
