@@ -30,7 +30,7 @@ class Presliding:
 
 def fit_presliding(model: Model, runs: Sequence[Run], breakaways: Sequence[Breakaway]) -> Presliding:
     """Bristle stiffness from the deflection before each breakaway (F = sigma_0 z), else Eq. 15; damping by Eq. 16."""
-    slopes = [found for run in runs for b in breakaways if b.run == run.name and (found := _compliance(model, run, b))]
+    slopes = [found for run in runs for found in _compliances(model, run, [b for b in breakaways if b.run == run.name])]
     values, intervals, remarks = {}, {}, {}
     stiffness = _pooled(slopes)
     if stiffness:
@@ -56,9 +56,17 @@ def passive_damping(model: Model) -> float:
     return float(2.0 * np.sqrt(drag * coulomb) * static / rise) if rise > 0.0 and drag > 0.0 else float("inf")
 
 
-def _compliance(model: Model, run: Run, breakaway: Breakaway) -> tuple[float, float] | None:
-    """Deflection over force [m/N] and its deviation while the force rose from rest, None when it hardly did."""
-    force = holding_force(model, run)
+def _compliances(model: Model, run: Run, breakaways: Sequence[Breakaway]) -> list[tuple[float, float]]:
+    """Deflection over force [m/N] and its deviation before each breakaway of a run that shows it."""
+    if not breakaways:
+        return []
+    force, noise = holding_force(model, run), run_noise(run)["position_m"]
+    found = (_compliance(run, force, noise, breakaway) for breakaway in breakaways)
+    return [one for one in found if one]
+
+
+def _compliance(run: Run, force: Array, noise: float, breakaway: Breakaway) -> tuple[float, float] | None:
+    """Compliance [m/N] and its deviation while the force rose from rest, None when it hardly did."""
     begin = breakaway.index - round(breakaway.rest / run.sample_time)
     rows = np.arange(max(begin, 0), breakaway.index)
     rows = rows[np.abs(force[rows]) < _ELASTIC * breakaway.force]
@@ -71,7 +79,7 @@ def _compliance(model: Model, run: Run, breakaway: Breakaway) -> tuple[float, fl
         return None
     design = np.stack([mean_force, np.ones(count)], axis=1)
     solution, *_ = np.linalg.lstsq(design, mean_y, rcond=None)
-    scatter = max(float(np.std(mean_y - design @ solution)), run_noise(run)["position_m"] / np.sqrt(block))
+    scatter = max(float(np.std(mean_y - design @ solution)), noise / np.sqrt(block))
     return float(solution[0]), scatter / float(np.std(mean_force) * np.sqrt(count))
 
 
