@@ -19,6 +19,7 @@ CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names()]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")
 
+_READ_BY_BRISTLES = {"friction_scale", "friction_rise", "static_rise", "slip", "stribeck"}
 _RANGES = {  # by unit: where the random values of states and signals lie
     "V": (-10.0, 10.0), "s": (0.0, 1e3), "Pa": (5e4, 1e6), "kg/s": (-0.02, 0.02), "m3": (0.0, 1e-4),
     "N": (-500.0, 500.0), "kg": (0.0, 20.0), "m": (-1.0, 1.0), "m/s": (-5.0, 5.0), "N s/m": (0.0, 5e3), "1": (0.0, 1.0),
@@ -74,6 +75,11 @@ def effect_function(effect: type[Effect], key: str) -> Callable[..., Any]:
     return FunctionType(function.__code__, {**vars(maths), **function.__globals__}, key)
 
 
+def neutral_values(effect: type[Effect]) -> dict[str, float]:
+    """Neutral values of an effect's parameters, those that have one, by dotted name."""
+    return {f"{effect.name}.{key}": p.neutral for key, p in effect.parameters.items() if p.neutral is not None}
+
+
 @cache
 def machine(name: str) -> Model:
     """The axis with the effect added, in place of those that set the same signal."""
@@ -94,8 +100,9 @@ def sets(effect: type[Effect]) -> set[str]:
 
 @cache
 def lone_machine(name: str) -> Model:
-    """The effect with as few others as it needs: none, the bristle, or the whole axis."""
-    for others in ([], ["lugre_friction"]):
+    """The effect with as few others as it needs to be felt: none, the bristle, or the whole axis."""
+    written = {w for function in EFFECTS[name].functions.values() for w in function.writes}
+    for others in ([], ["lugre_friction"])[bool(written & _READ_BY_BRISTLES) :]:
         try:
             return AXIS.with_effects(dict.fromkeys([*others, name]))
         except UsageError:

@@ -6,7 +6,7 @@ from pneumo_ros.plant.effect import Effect, Parameter
 class QuadraticDrag(Effect):
     """Quadratic drag C_d v |v|, the empirical memoryless term f(v) of LuGre in Eq. 10; it sets the top speed."""
 
-    coefficient = Parameter(4546.7, "N s2/m2", "drag coefficient C_d", low=0.0, high=1e7)
+    coefficient = Parameter(4546.7, "N s2/m2", "drag coefficient C_d", low=0.0, high=1e7, neutral=0.0)
 
     source = "paper Eq. 10"
     signature = "residual force grows with the square of velocity, odd"
