@@ -79,6 +79,7 @@ setup(
             "recorder = pneumo_ros.ros.recorder:main",
             "player = pneumo_ros.ros.player:main",
             "experiment = pneumo_ros.ros.experiment:main",
+            "identification = pneumo_ros.ros.identification:main",
         ],
     },
 )

@@ -25,9 +25,7 @@ def constant_voltage(model: Model, voltages: Sequence[float] = (), seconds: floa
     """
     for volts in voltages:
         if not 0.0 < volts <= MAX_VOLTAGE:
-            raise UsageError(
-                f"a voltage is {volts:g} V; allowed is more than 0 to {MAX_VOLTAGE:g} V, run both ways"
-            )
+            raise UsageError(f"a voltage is {volts:g} V; allowed is more than 0 to {MAX_VOLTAGE:g} V, run both ways")
     right, left = dead_zone(model)
     steps = [step for step in STEPS if max(right, left) + step <= MAX_VOLTAGE]
     pairs = [(v, v) for v in sorted(voltages)] or [(right + step, left + step) for step in steps]

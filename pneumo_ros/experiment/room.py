@@ -3,7 +3,7 @@
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 
-MARGIN = 0.05  # of the stroke, before either end: room to coast after the valve closes
+MARGIN = 0.1  # of the stroke, before either end: a piston whose valve closes, for a stalled computer say, coasts so far
 END = 0.005  # of the stroke, before either end: nobody gets there by coasting
 MODERATE = 0.3  # V beyond the dead zone
 

@@ -34,7 +34,7 @@ def test_the_plan_shows_duration_and_way_of_every_trial(capsys: pytest.CaptureFi
     text = capsys.readouterr().out
     assert "2 trials" in text
     assert "constant_p1500  +1.500 V" in text
-    assert "Room: -0.9 to 0.9 m" in text
+    assert "Room: -0.8 to 0.8 m" in text
     assert pneumo(*SHORT, "--plan", "--json", "-") == 0
     plan = json.loads(capsys.readouterr().out)
     assert [trial["name"] for trial in plan["trials"]] == ["constant_p1500", "constant_m1500"]

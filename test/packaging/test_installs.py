@@ -16,7 +16,7 @@ import pneumo_ros
 ROOT = Path(__file__).parents[2]
 CONFIG = sorted(path.relative_to(ROOT / "pneumo_ros") for path in (ROOT / "pneumo_ros" / "config").rglob("*.yaml"))
 LAUNCH = sorted(path.name for path in (ROOT / "launch").glob("*.launch.py"))
-EXECUTABLES = ("pneumo", "simulator", "controller", "axis", "recorder", "player", "experiment")
+EXECUTABLES = ("pneumo", "simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
 # A child must find its own libraries, not those of this session's environment
 CLEAN = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH")}
 

@@ -25,6 +25,7 @@ from pneumo_ros.ros.experiment.settings import SETTINGS
 from pneumo_ros.ros.experiment.takes import Takes
 from pneumo_ros.ros.experiment.tellers import Teller
 from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
 CHECK = 0.1  # s between two looks after the plant, at most
@@ -131,6 +132,8 @@ class Experiment(AxisNode):
         if not missing:
             away = abs(self._stamp - time.time_ns()) > SIMULATED
             self._takes.simulated = away and self.count_publishers("/clock") > 0
+            if not self._takes.simulated:  # beside nodes that have it, commands would come late
+                take_priority(self.parameters[PRIORITY.name])
             self.folder.mkdir(parents=True, exist_ok=True)
             write_whole(self.folder / "programme.yaml", programme_text(self.programme))
             self._origin, self._begun = self._stamp, True

@@ -1,6 +1,7 @@
 """Parameters of the experiment."""
 
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
 SETTINGS = (
@@ -10,6 +11,7 @@ SETTINGS = (
     Setting("output", "", "folder for the recordings; none: experiment_ and the time, here", live=False),
     Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
     Setting("measurement_timeout", 0.2, "silence of the plant that ends the experiment", "s", 0.01, 60.0, live=False),
+    PRIORITY,
     Setting("wait", 10.0, "longest wait for the plant at the start", "s", 0.0, 3600.0, live=False),
     Setting("events", False, "tell what happens on stdout as lines of JSON; the end of stdin ends it", live=False),
 )  # fmt: skip

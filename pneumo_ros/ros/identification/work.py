@@ -1,0 +1,116 @@
+"""The work itself, as a program: a job in JSON on stdin, what comes of it as lines of JSON on stdout. No ROS.
+
+It is a process of its own because numba and numpy hold the interpreter for long, and a node must answer.
+"""
+
+import json
+import math
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pneumo_ros.diagnose.moved import refit_dict
+from pneumo_ros.errors import DataError, PneumoError
+from pneumo_ros.identify.campaign import identify
+from pneumo_ros.identify.refit import refit
+from pneumo_ros.identify.run import Run, make_run
+from pneumo_ros.identify.summary import summary
+from pneumo_ros.plant import Library, Model, model_from_dict
+from pneumo_ros.records import read_recording
+
+NICE = 5  # whoever controls something comes first
+PARTS = (0.0, 0.2, 1.0)  # of the progress: reading, identifying
+PARTS_WITH_REFIT = (0.0, 0.1, 0.4, 1.0)
+
+
+class Report:
+    """Writes lines; progress no more than a hundred of them."""
+
+    def __init__(self) -> None:
+        self._percent = -1
+
+    def line(self, **content: object) -> None:
+        """One line; numbers that are not finite become null."""
+        print(json.dumps(plain(content), allow_nan=False), flush=True)
+
+    def part(self, begin: float, end: float) -> Callable[[float, str], None]:
+        """Progress of a part of the work, which goes from `begin` to `end` of the whole."""
+
+        def tell(share: float, text: str) -> None:
+            percent = int(100 * (begin + (end - begin) * min(max(share, 0.0), 1.0)))
+            if percent > self._percent:
+                self._percent = percent
+                self.line(progress=percent, text=text)
+
+        return tell
+
+
+def plain(value: Any) -> Any:
+    """`value` with NaN and infinities as None, numpy's numbers and arrays as Python's."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
+    """The result of a job: `machine` and `name` of the model, `files` with effects, `bags`, `axis`, `whole_model`.
+
+    Raises DataError when no recording can be used, and what identification raises.
+    """
+    begun = time.monotonic()
+    parts = PARTS_WITH_REFIT if job["whole_model"] else PARTS
+    model = model_from_dict(job["machine"], job["name"], Library(job["files"]))
+    runs, refused = read(job["bags"], job["axis"] or None, report, report.part(*parts[0:2]))
+    found = identify(model, runs, progress=report.part(*parts[1:3]))
+    result = summary(found, runs) | {"refused_recordings": refused, "recordings": [run.name for run in runs]}
+    after: Model = found.model
+    if job["whole_model"]:
+        refitted = refit(after, runs, progress=report.part(*parts[2:4]))
+        after = refitted.model
+        result["refit"] = refit_dict(refitted, [run.name for run in runs])
+    return result | {"machine": after.as_dict(), "took_s": time.monotonic() - begun}
+
+
+def read(
+    paths: Sequence[str], axis: str | None, report: Report, progress: Callable[[float, str], None]
+) -> tuple[list[Run], dict[str, str]]:
+    """Runs, and by path the reasons why others are refused; runs of the same name are told apart by their paths."""
+    runs, refused = dict[str, Run](), dict[str, str]()
+    for done, path in enumerate(paths):
+        progress(done / len(paths), "reading recordings")
+        try:
+            recording = read_recording(path, axis)
+            runs[path] = make_run(recording)
+        except PneumoError as error:
+            refused[path] = str(error)
+            report.line(refused=path, reason=str(error))
+            continue
+        for sentence in recording.warnings:
+            report.line(warning=f"{recording.name}: {sentence}")
+    if not runs:
+        raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(refused.values())[-1]}")
+    names = [run.name for run in runs.values()]
+    return [replace(run, name=path) if names.count(run.name) > 1 else run for path, run in runs.items()], refused
+
+
+def main() -> int:
+    """Read the job, do it, tell the result or why there is none."""
+    os.nice(NICE)
+    report = Report()
+    try:
+        report.line(result=work(json.load(sys.stdin), report))
+    except PneumoError as error:
+        report.line(failed=str(error))
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
