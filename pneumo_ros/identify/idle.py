@@ -18,19 +18,25 @@ Array = NDArray[np.float64]
 LONG = 5.0  # s: a running axis waits shorter for its breakaway, but for voltages at the edge of the dead zone
 _BLOCK = 0.05  # s
 _STILL = 1e-4  # m that bristles and noise move a piston at rest
-_FILLS = 1.5  # times what fills a chamber from the atmosphere to the supply; a third of it breaks a piston away
+_FILLS = 0.9  # times what fills a chamber from the atmosphere to the supply; a third of it breaks a piston away
 _EDGE = 2e-3  # m from the end of the stroke
-_HANGS, _FEWEST = 1.0, 200  # s and samples of one value, where noise would change it
+_HANGS, _SLOWEST = 1.0, 5e-3  # s of one value where noise would change it; s between samples that tell noise apart
 _TRAVEL = 0.05  # m both ways
 _FLAT = 1.5  # noise deviations that a pressure sensor shows although nothing reaches it
+_UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}
 _TOPICS = {"position_m": "the position", "pressure_a_pa": "chamber_a/pressure", "pressure_b_pa": "chamber_b/pressure"}
 
 
 def idle_notes(model: Model, run: Run) -> list[str]:
     """Sentences on parts of `run` in which nothing happens that should. Raises DataError for a dead pressure sensor."""
     _check_alive(run)
-    notes = [f"{_TOPICS[name]} {words}" for name, signal in run.signals.items() for words in _hangs(run, name, signal)]
-    return [*notes, *_rests(model, run), *_commands(run)]
+    hung = {name: found for name, signal in run.signals.items() if (found := _hung(run, signal))}
+    notes = [
+        f"{_TOPICS[name]} repeats {run.signals[name][start]:.6g} {_UNITS[name]} without any noise "
+        f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
+        for name, (start, stop) in hung.items()
+    ]
+    return [*notes, *_rests(model, run, *hung.get("position_m", (0, 0))), *_commands(run)]
 
 
 def _check_alive(run: Run) -> None:
@@ -48,24 +54,24 @@ def _check_alive(run: Run) -> None:
             )
 
 
-def _hangs(run: Run, name: str, signal: Array) -> Iterator[str]:
-    """The longest stretch in which a noisy signal repeats one value."""
+def _hung(run: Run, signal: Array) -> tuple[int, int] | None:
+    """Start and stop of the longest stretch in which a signal repeats one value, although it has noise elsewhere."""
     changes = np.concatenate([[0], np.flatnonzero((np.diff(signal) != 0.0) | ~run.measured[1:]) + 1, [len(run)]])
     longest = int(np.argmax(np.diff(changes)))
     start, stop = int(changes[longest]), int(changes[longest + 1])
-    if (stop - start) * run.sample_time < _HANGS or stop - start < _FEWEST or stop - start == len(run):
-        return
+    if (stop - start) * run.sample_time < _HANGS or run.sample_time > _SLOWEST or stop - start == len(run):
+        return None
     rest = np.delete(signal, slice(start, stop))
-    if noise_level(rest) > 1.5 * max(resolution(rest) / np.sqrt(12.0), 1e-6 * float(np.ptp(rest))):
-        yield (
-            f"repeats {signal[start]:.6g} {name.rpartition('_')[2].replace('pa', 'Pa')} without any noise "
-            f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
-        )
+    floor = max(resolution(rest) / np.sqrt(12.0), 1e-6 * float(np.ptp(rest)))  # of a signal without noise
+    return (start, stop) if noise_level(rest) > 1.5 * floor else None
 
 
-def _rests(model: Model, run: Run) -> Iterator[str]:
-    """Rests that are longer than a piston waits for its breakaway; a piston that never moves."""
-    width = max(round(_BLOCK / run.sample_time), 1)
+def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
+    """Rests that are longer than a piston waits for its breakaway; a piston that never moves.
+
+    Between the samples `since` and `until` the position is known to hang.
+    """
+    width = min(max(round(_BLOCK / run.sample_time), 1), len(run))
     still = _STILL + 6.0 * run_noise(run)["position_m"]
     blocks = run.position[: len(run) // width * width].reshape(-1, width).mean(axis=1)
     if np.ptp(blocks) < still:
@@ -76,7 +82,10 @@ def _rests(model: Model, run: Run) -> Iterator[str]:
         )
     for first, last in _quiet(blocks, still):
         start, stop = first * width, last * width
-        if (stop - start) * run.sample_time >= LONG and (why := _pushed(model, run, start, stop)):
+        hangs = min(stop, until) - max(start, since) > 0.8 * (stop - start)
+        if hangs or (stop - start) * run.sample_time < LONG:
+            continue
+        if why := _pushed(model, run, start, stop):
             yield (
                 f"the piston does not move {_span(run, start, stop)}, at {run.position[start]:.4g} m, although {why}: "
                 "it is stuck, or held by something that the model lacks, or its position sensor hangs; this part is "

@@ -19,7 +19,7 @@ _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that 
 _POOR = 0.5  # share of a signal's size from which on a residual is worth asking what is wrong
 _VENTED = 0.5  # of the atmosphere's pressure: no running axis has an emptier chamber
 _BLOCK = 0.05  # s
-_UNITS = {"momentum": ("N", 1.0), "chamber_a": ("mg/s", 1e6), "chamber_b": ("mg/s", 1e6)}
+_UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ def _mistake(model: Model, run: Run) -> str | None:
         return None
     reading = f"; a vented chamber reads {1e-3 * low:.3g} kPa" if best.word == "gauge" else ""
     return (
-        f"{run.name}: {best.what}{reading}. {model.name} leaves {_sizes(recorded)} unexplained as recorded, "
-        f"{_sizes(tried[best])} otherwise. Type --read-as {best.word}, or {best.mend}"
+        f"{run.name}: {best.what}{reading}. As recorded, '{model.name}' leaves unexplained {_sizes(recorded)}; read "
+        f"the other way, {_sizes(tried[best])}. Type --read-as {best.word}, or {best.mend}"
     )
 
 
@@ -128,7 +128,7 @@ def _size(model: Model, run: Run, equation: str) -> float:
     pressure = run.signals[f"pressure_{equation[-1]}_pa"]
     content = pressure * (model[f"chambers.volume_{equation[-1]}"] + slope * run.position)
     content /= model["air.gas_constant"] * model["air.temperature"]
-    width = max(round(_BLOCK / run.sample_time), 1)
+    width = min(max(round(_BLOCK / run.sample_time), 1), len(run) // 2)
     means = content[: len(content) // width * width].reshape(-1, width).mean(axis=1)
     return float(np.sqrt(np.mean(np.diff(means) ** 2))) / (width * run.sample_time)
 
@@ -147,5 +147,5 @@ def _raised(run: Run, rise: float) -> Run:
 def _sizes(residuals: dict[str, float]) -> str:
     """Residuals in words."""
     return ", ".join(
-        f"{_UNITS[name][1] * rms:.3g} {_UNITS[name][0]} ({name.replace('_', ' ')})" for name, rms in residuals.items()
+        f"{_UNITS[name][1] * rms:.2g} {_UNITS[name][0]} ({name.replace('_', ' ')})" for name, rms in residuals.items()
     )
