@@ -1,7 +1,9 @@
 """Identification as a whole: the paper's machine with noise, the independent rig, and runs that show too little."""
 
+import os
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,10 +14,13 @@ from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.campaign import FRICTION, Identification, identify
 from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS
 from pneumo_ros.identify.presliding import DAMPING, STIFFNESS
+from pneumo_ros.identify.run import make_run
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Model, load_model, save_model
+from pneumo_ros.records import read_recording
 
 STATIC, COULOMB, STRIBECK, DRAG = FRICTION[:4]
+RECORDED = Path(os.environ.get("PNEUMO_RIG", Path(__file__).parents[3] / "shared" / "rig")) / "healthy"
 EVERY = (*FRICTION[:4], *COEFFICIENTS, *LIMITS, STIFFNESS)
 
 
@@ -162,3 +167,14 @@ def test_the_summary_holds_the_evidence() -> None:
     assert np.isnan(curve["friction"]).sum() == 1
     assert data["breakaways"][0]["force_n"] > 90.0
     assert all(abs(pair["r"]) <= 1.0 + 1e-9 for pair in data["correlations"])
+
+
+@pytest.mark.skipif(not RECORDED.is_dir(), reason="the recordings of the rig lie beside the checkout, not in it")
+def test_recordings_of_the_rig_are_identified() -> None:
+    """Bags of a machine whose parameters are within 5 % of the default ones."""
+    names = ("p0880", "m0880", "p7000", "m7000")
+    found = identify(load_model(), [make_run(read_recording(RECORDED / f"constant_{name}")) for name in names])
+    assert found.map_fit.ratio == pytest.approx(1.0, abs=0.2)
+    assert {COULOMB, DRAG, *COEFFICIENTS, *LIMITS} <= {name for name, one in found.parameters.items() if one.interval}
+    for name in (*FRICTION[:2], DRAG, *COEFFICIENTS, *LIMITS):
+        assert found.model[name] == pytest.approx(load_model()[name], rel=0.06), name

@@ -95,6 +95,16 @@ def test_what_was_known_before_counts_as_information_but_not_as_a_run() -> None:
     assert half[1] == pytest.approx(2.0 / 2.0, rel=0.2)  # two deviations of 1 / 2
 
 
+def test_what_was_known_before_does_not_make_five_runs_six() -> None:
+    """From five runs nobody can tell how alike errors within runs are; the intervals are those of independent ones."""
+    rng = np.random.default_rng(0)
+    shared = 5.0 * rng.standard_normal(5).repeat(12)
+    design = np.append(np.ones(60), 1e-3)[:, None]
+    groups = [*(str(k // 12) for k in range(60)), ""]
+    half, _ = half_widths(np.append(shared, 0.0), design, np.ones(61), groups)
+    assert half[0] == pytest.approx(2.0 * np.sqrt(np.mean(shared**2) / 60.0), rel=0.02)
+
+
 def test_what_one_run_alone_shows_keeps_its_interval() -> None:
     """Leaving that run out leaves nothing: the interval is that of independent errors."""
     rng = np.random.default_rng(0)

@@ -70,11 +70,12 @@ def test_a_far_start_finds_the_same() -> None:
     check(fit_map(far, points(), [], FRICTION[:4]), FRICTION[:4], 0.02)
 
 
-def test_an_outlying_run_of_points_costs_little() -> None:
-    spoilt = [replace(p, force=p.force + 8.0) if k < 4 else p for k, p in enumerate(points())]
+def test_an_outlying_run_costs_little() -> None:
+    """Somebody leaned on the axis in one run of sixteen: least squares would be off by a newton."""
+    spoilt = [replace(p, force=p.force + 15.0) if p.run == "run 6" else p for p in points()]
     fit = fit_map(wrong(), spoilt, [], FRICTION[:4])
-    for name in (COULOMB, DRAG):
-        assert fit.values[name] == pytest.approx(truth()[name], rel=0.01)
+    assert fit.values[COULOMB] == pytest.approx(truth()[COULOMB], abs=0.2)
+    assert fit.values[DRAG] == pytest.approx(truth()[DRAG], rel=0.01)
 
 
 def test_one_direction_is_enough() -> None:
