@@ -7,8 +7,16 @@ import numpy as np
 import pytest
 from plant import checks
 from plant.catalogue import (
-    AXIS, CATALOGUE, EFFECTS, in_python, lone_machine, machine, moves_piston, neutral_values, seeded,
-)  # fmt: skip
+    AXIS,
+    CATALOGUE,
+    EFFECTS,
+    in_python,
+    lone_machine,
+    machine,
+    moves_piston,
+    neutral_values,
+    seeded,
+)
 
 from pneumo_ros.plant import Model, Stepper
 

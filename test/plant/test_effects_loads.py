@@ -1,0 +1,121 @@
+"""Effects of loads and of the position sensor against values that theory gives."""
+
+import numpy as np
+import pytest
+from plant.catalogue import AXIS, in_python, lone_machine, machine
+from plant.driven import along
+
+from pneumo_ros.plant import Library, Model
+
+OFFSET, STIFFNESS = 0.2, 250.0
+
+
+def seen(name: str, signal: str, values: dict[str, float], **state: float) -> float:
+    """A signal of the axis with the effect at one instant."""
+    model = in_python(machine(name).with_parameters({f"{name}.{key}": value for key, value in values.items()}))
+    return float(model.outputs(model.state(**state), 0.0)[signal][0])
+
+
+def test_constant_load_pulls_back_at_rest_and_both_ways() -> None:
+    rod = 1e5 * (4.1e-4 - 3.0e-4)
+    forces = [seen("constant_load", "force", {"load": 35.0}, v=v) - rod for v in (-0.5, 0.0, 0.5)]
+    assert forces == pytest.approx([35.0] * 3, rel=1e-12)
+
+
+def test_spring_load_is_hookes() -> None:
+    given = {"stiffness": STIFFNESS, "rest_position": OFFSET}
+    forces = [seen("spring_load", "force", given, y=y) - 11.0 for y in (-0.4, OFFSET, 0.9)]
+    assert forces == pytest.approx([-0.6 * STIFFNESS, 0.0, 0.7 * STIFFNESS], rel=1e-9, abs=1e-9)
+
+
+def test_payload_is_felt_in_acceleration_alone() -> None:
+    def rates(model: Model) -> np.ndarray:
+        plain = in_python(model)
+        return np.asarray(plain.derivatives(plain.state(p_a=4e5, p_b=2e5), 3.0)[0])
+
+    loaded, bare = rates(machine("payload_mass").with_parameters({"payload_mass.mass_added": 7.0})), rates(AXIS)
+    assert loaded[1] == pytest.approx(bare[1] * 5.0 / 12.0, rel=1e-12)
+    assert np.delete(loaded, 1).tobytes() == np.delete(bare, 1).tobytes()
+
+
+def test_held_rod_lets_the_load_swing_at_its_frequency_and_decay() -> None:
+    """x = x_0 exp(-zeta omega t) (cos omega_d t + ...), omega_d = omega sqrt(1 - zeta^2): peaks one period apart."""
+    values = {"load_compliance.frequency": 20.0, "load_compliance.damping_ratio": 0.05}
+    x, _ = along(lone_machine("load_compliance").with_parameters(values), np.zeros(5001), 0.0, 1e-4, stretch=1e-3)
+    stretch, omega = x[:, 4], 2.0 * np.pi * 20.0
+    peaks = np.flatnonzero((stretch[1:-1] > stretch[:-2]) & (stretch[1:-1] >= stretch[2:])) + 1
+    assert np.diff(peaks).mean() * 1e-4 == pytest.approx(1.0 / (20.0 * np.sqrt(1.0 - 0.05**2)), rel=2e-3)
+    assert stretch[peaks[3]] == pytest.approx(1e-3 * np.exp(-0.05 * omega * peaks[3] * 1e-4), rel=1e-2)
+
+
+def test_free_masses_swing_faster_and_keep_their_momentum() -> None:
+    """Without friction and gas: frequency f / sqrt(1 - share) about the common centre of mass, undamped for long."""
+    values = {
+        "load_compliance.load_share": 0.4,
+        "load_compliance.frequency": 20.0,
+        "load_compliance.damping_ratio": 0.0,
+    }
+    model = in_python(Model.build(["load_compliance"], values, library=Library(), frame=("piston",), defaults=True))
+    x = model.simulate(np.zeros(3000), model.state(stretch=1e-3), sample_time=1e-4)
+    momentum = 0.6 * x[:, 1] + 0.4 * x[:, 3]
+    assert np.abs(momentum).max() < 1e-6 * np.abs(x[:, 1]).max()
+    crossings = np.flatnonzero(np.diff(np.sign(x[:, 2])) != 0)
+    assert np.diff(crossings).mean() * 2e-4 == pytest.approx(np.sqrt(0.6) / 20.0, rel=2e-3)
+    assert np.abs(x[-500:, 2]).max() == pytest.approx(1e-3, rel=2e-3)
+
+
+def test_load_begins_with_the_velocity_of_its_piston() -> None:
+    model = machine("load_compliance")
+    assert model.state(v=0.4)[model.states.index("v_l")] == 0.4
+    assert model.state(v=0.4, v_l=0.1)[model.states.index("v_l")] == 0.1
+    moving = AXIS.state(v=0.3, p_a=4e5)
+    assert model.continued(AXIS, moving)[model.states.index("v_l")] == 0.3
+
+
+def measured(name: str, values: dict[str, float], y: np.ndarray, v: np.ndarray, sample: float) -> np.ndarray:
+    """Reading of the position sensor along a motion."""
+    model = machine(name).with_parameters({f"{name}.{key}": value for key, value in values.items()})
+    return np.asarray(along(model, y, v, sample)[1]["y_measured"])
+
+
+def test_backlash_waits_for_half_the_play_and_at_reversals_for_all_of_it() -> None:
+    gap, t = 4e-4, 1e-3 * np.arange(4001)
+    y, v = 1e-3 * np.sin(np.pi * t), 1e-3 * np.pi * np.cos(np.pi * t)
+    shown = measured("backlash", {"gap": gap}, y, v, 1e-3)
+    waiting = y < 0.5 * gap
+    assert np.abs(shown[: np.flatnonzero(~waiting)[0]]).max() < 1e-7
+    rising = slice(150, 500)
+    assert shown[rising] == pytest.approx(y[rising] - 0.5 * gap, abs=1e-7)
+    after = (t > 0.5) & (t < 1.0) & (y > 1e-3 - gap + 1e-6)
+    assert shown[after] == pytest.approx(np.full(after.sum(), 1e-3 - 0.5 * gap), abs=1e-7)
+    falling = slice(900, 1500)
+    assert shown[falling] == pytest.approx(y[falling] + 0.5 * gap, abs=1e-7)
+
+
+@pytest.mark.parametrize("delay", [5e-4, 2e-3, 5e-3, 2e-2])
+def test_delayed_position_is_the_position_of_then(delay: float) -> None:
+    """To what the approximation allows: a few parts in 10^4 of the lag for motions of an axis."""
+    t = 1e-3 * np.arange(3001)
+    wave = 2.0 * np.pi * 1.5
+    y, v = 0.05 * (1.0 - np.cos(wave * t)), 0.05 * wave * np.sin(wave * t)
+    shown = measured("position_sensor_delay", {"delay": delay}, y, v, 1e-3)
+    then = 0.05 * (1.0 - np.cos(wave * (t - delay)))
+    largest = 0.05 * wave * delay
+    assert np.abs(shown - then)[200:].max() < max(5e-4, 2e-3 * 1e-3 / delay) * largest + 3e-6
+
+
+def test_sensors_of_pressure_err_by_offset_and_gain() -> None:
+    offset = {"offset_a": 7e3, "offset_b": -4e3}
+    assert seen("pressure_sensor_offset", "p_a_measured", offset, p_a=3e5) == pytest.approx(3.07e5, rel=1e-12)
+    assert seen("pressure_sensor_offset", "p_b_measured", offset, p_b=3e5) == pytest.approx(2.96e5, rel=1e-12)
+    gain = {"error_a": 0.02, "error_b": -0.01}
+    assert seen("pressure_sensor_gain", "p_a_measured", gain, p_a=3e5) == pytest.approx(3.06e5, rel=1e-12)
+    assert seen("pressure_sensor_gain", "p_b_measured", gain, p_b=3e5) == pytest.approx(2.97e5, rel=1e-12)
+
+
+def test_errors_of_sensors_do_not_move_the_machine() -> None:
+    names = ["backlash", "position_sensor_delay", "pressure_sensor_gain", "pressure_sensor_offset"]
+    model = in_python(AXIS.with_effects([*AXIS.effects, *names]))
+    given, voltage = {"p_a": 3e5, "p_b": 4e5}, np.repeat([4.0, -3.0], 20)
+    wrong, right = model.simulate(voltage, model.state(**given)), AXIS.simulate(voltage, AXIS.state(**given))
+    assert wrong[:, : len(AXIS.states)].tobytes() == right.tobytes()

@@ -1,0 +1,76 @@
+"""All effects of the catalogue in one kernel: it compiles, neutral effects vanish, lanes advance side by side."""
+
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from plant.catalogue import AXIS, CATALOGUE, in_python, neutral_values
+from plant.checks import own_values
+
+from pneumo_ros.plant import Model
+
+VOLTAGE = np.repeat([4.0, -3.0, 0.0, 6.0, -8.0, 1.2], 60)
+
+
+@cache
+def everything() -> Model:
+    """The axis with every effect there is."""
+    return AXIS.with_effects([*AXIS.effects, *(e.name for e in CATALOGUE if e.name not in AXIS.effects)])
+
+
+def starts(count: int) -> np.ndarray:
+    """States at different places."""
+    return np.array([everything().state(y=y, p_a=3e5, p_b=4e5) for y in np.linspace(-0.95, 0.95, count)])
+
+
+def test_all_effects_go_together() -> None:
+    x = everything().simulate(VOLTAGE, starts(1)[0])
+    assert np.isfinite(x).all()
+    assert x[:10].tobytes() == in_python(everything()).simulate(VOLTAGE[:10], starts(1)[0]).tobytes()
+    assert np.abs(x[:, 0] - AXIS.simulate(VOLTAGE, AXIS.state(y=-0.95, p_a=3e5, p_b=4e5))[:, 0]).max() > 1e-3
+
+
+def test_all_at_their_neutral_values_are_the_axis() -> None:
+    """One kernel serves all models: what a machine lacks is turned down in it."""
+    neutral = {key: value for e in CATALOGUE if e.name not in AXIS.effects for key, value in neutral_values(e).items()}
+    x = everything().with_parameters(neutral).simulate(VOLTAGE, starts(1)[0])
+    axis = AXIS.simulate(VOLTAGE, AXIS.state(y=-0.95, p_a=3e5, p_b=4e5))
+    assert x[:, : len(AXIS.states)] == pytest.approx(axis, rel=1e-9)
+
+
+def test_effects_may_be_listed_in_any_order() -> None:
+    """Where none rewrites what another has written, the order decides that of the states and nothing else."""
+    names = ["valve_spool_dynamics", "heat_exchange", "viscous_friction", "load_compliance", "supply_pressure_droop"]
+    one, other = (in_python(AXIS.with_effects([*AXIS.effects, *given])) for given in (names, names[::-1]))
+    x, z = (model.simulate(VOLTAGE[::10], model.state(p_a=3e5, p_b=4e5)) for model in (one, other))
+    for name in one.states:
+        assert x[:, one.states.index(name)] == pytest.approx(z[:, other.states.index(name)], rel=1e-9, abs=1e-15)
+
+
+def test_lanes_of_all_effects_equal_single_runs_to_the_bit() -> None:
+    """Each lane with parameters of its own, drawn over half of their ranges about the defaults."""
+    model, random, states = everything(), np.random.default_rng(5), starts(20)
+    lanes = []
+    for _ in states:
+        drawn = {k: v for e in CATALOGUE if e.name not in AXIS.effects for k, v in own_values(e, random).items()}
+        mild = {key: model[key] + 0.02 * (value - model[key]) for key, value in drawn.items()}
+        lanes.append(model.with_parameters(mild))
+    out = model.simulate_lanes(VOLTAGE, states, np.array([lane.values for lane in lanes]))
+    for lane, state, run in zip(lanes, states, out, strict=True):
+        assert run.tobytes() == lane.simulate(VOLTAGE, state).tobytes()
+
+
+def test_nothing_in_a_kernel_calls_out_and_lanes_are_vectors() -> None:
+    """No elementary function of a library, which would keep lanes from advancing side by side."""
+    everything().simulate_lanes(VOLTAGE[:1], starts(1))
+    lanes = everything().kernel.run_lanes
+    lanes.recompile()  # what comes from the cache does not tell what it is made of
+    text = "\n".join(lanes.inspect_llvm().values())
+    called = set(re.findall(r"call [^@\n]*@\"?([\w.]+)", text))
+    assert not [
+        name for name in called if re.search(r"(^|\.)(sin|cos|tan|atan2?|exp2?|log|log2|pow|tanh)f?(\.|$)", name)
+    ]
+    single, packed = (len(re.findall(rf"f(?:mul|add|sub|div) {kind}", text)) for kind in ("double", r"<\d+ x double>"))
+    assert packed > 500
+    assert packed > 0.8 * single
