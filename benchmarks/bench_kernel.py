@@ -89,7 +89,8 @@ def our_loop(model: Model, voltage: np.ndarray) -> Callable[[], None]:
 def single(model: Model, loop: Callable[..., np.ndarray], repetitions: int) -> None:
     """Table of one machine: errors against short steps, time per step, ratio."""
     print(
-        f"{'one machine':26s} {'error ours':>12s} {'error C':>12s} {'ours':>10s} {'C':>10s}   ours / C (target: at most 1)"
+        f"{'one machine':26s} {'error ours':>12s} {'error C':>12s} {'ours':>10s} {'C':>10s}   "
+        "ours / C (target: at most 1)"
     )
     x = start_of(model)
     for name, voltage in workloads().items():
