@@ -88,8 +88,7 @@ class _MapProblem:
         )
         self.first = np.array([model[name] for name in self.names]) / self.scale
         self.low, self.high = (
-            np.array(side[: len(free)]) / self.scale[: len(free)]
-            for side in ([s.low for s in specs], [s.high for s in specs])
+            np.array(side) / self.scale for side in ([s.low for s in specs], [s.high for s in specs])
         )
 
     def _full(self, x: Array) -> Array:
@@ -107,13 +106,14 @@ class _MapProblem:
     def solutions(self) -> list[Any]:
         """Local solutions from several starts, always the same ones."""
         rng = np.random.default_rng(0)
-        first = self.first[: len(self.free)]
+        first, low, high = (every[: len(self.free)] for every in (self.first, self.low, self.high))
         spread = np.exp(rng.normal(0.0, 0.4, (STARTS, len(first))))
-        spread[0] = 1.0
-        starts = np.clip(first * spread, self.low + 1e-9, self.high - 1e-9)
-        bounds = (self.low, self.high)
+        around = np.where(first == 0.0, 1.0, first)  # of an added effect: its usual size
+        starts = np.clip(np.vstack([first, around * spread[1:]]), low + 1e-9, high - 1e-9)
         return [
-            least_squares(self.residuals, s, bounds=bounds, loss="soft_l1", f_scale=F_SCALE, x_scale="jac", max_nfev=50)
+            least_squares(
+                self.residuals, s, bounds=(low, high), loss="soft_l1", f_scale=F_SCALE, x_scale="jac", max_nfev=50
+            )
             for s in starts
         ]
 
@@ -121,13 +121,15 @@ class _MapProblem:
         """Intervals, correlation and residuals at the solution x."""
         residual = self.residuals(x)
         half, correlation = self._confidence(x, residual)
+        x = np.where(x - self.low[: len(x)] < 1e-9, self.low[: len(x)], x)  # on its bound, to the last digits
         values = {name: self.model[name] for name in self.names}
         intervals = {}
         for name, value, h in zip(self.free, (x * self.scale[: len(x)]).tolist(), half.tolist(), strict=True):
+            least, most = self.model.specification(name).low, self.model.specification(name).high
             if h > LOOSE * max(abs(value), self._least(name)):
                 unknown[name] = _loose(value, h, self.model.specification(name).unit)
             else:
-                values[name], intervals[name] = value, (value - h, value + h)
+                values[name], intervals[name] = value, (max(value - h, least), min(value + h, most))
         whitened = residual[: len(self.velocity)]
         ratio = float(np.sqrt(np.mean(whitened**2)))
         return MapFit(values, intervals, correlation, self.free, whitened * self.spread, self.spread, ratio, unknown)
@@ -140,7 +142,9 @@ class _MapProblem:
 
     def _confidence(self, x: Array, residual: Array) -> tuple[Array, Array]:
         """Half widths (free,) and correlation, with what an error of the held parameters would do (Schmidt 1966)."""
-        jacobian = central_jacobian(self.residuals, self._full(x))
+        full = self._full(x)
+        room = 2e-5 * np.maximum(np.abs(full), 1e-3)  # for the differences, where a value lies on its bound
+        jacobian = central_jacobian(self.residuals, np.clip(full, self.low + room, self.high - room))
         weight = 1.0 / (1.0 + (residual / F_SCALE) ** 2)
         mine, others = jacobian[:, : len(x)], jacobian[:, len(x) :]
         half, correlation = half_widths(residual, mine, weight, self.groups)

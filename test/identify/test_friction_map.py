@@ -137,6 +137,25 @@ def test_no_viscous_friction_is_an_answer_too() -> None:
     assert high < 10.0
 
 
+def test_a_value_on_its_bound_has_an_interval() -> None:
+    """Forces that ask for less than no viscous friction: zero, and the others as without it."""
+    name = "viscous_friction.coefficient"
+    start = truth().with_effects([*truth().effects, "viscous_friction"], {name: 0.0})
+    less = [replace(p, force=p.force - 6.0 * p.velocity) for p in points(each=60)]
+    fit = fit_map(start, less, [], (*FRICTION[:4], name))
+    assert fit.values[name] == 0.0 == fit.intervals[name][0]
+    assert 0.0 < fit.intervals[name][1] < 6.0
+    assert fit.values[COULOMB] == pytest.approx(69.8, abs=0.4)
+
+
+def test_a_held_value_on_its_bound_does_no_harm() -> None:
+    name = "viscous_friction.coefficient"
+    start = truth().with_effects([*truth().effects, "viscous_friction"], {name: 0.0})
+    fit = fit_map(start, points((0.1,)), [breakaway(100.0)], (*FRICTION[:4], name))
+    assert name in fit.undetermined
+    assert fit.values[name] == 0.0
+
+
 def test_too_few_points_are_refused() -> None:
     with pytest.raises(DataError, match="4 steady stretches are too few for 4 friction parameters; record more"):
         fit_map(wrong(), points((0.005, 0.03), each=1), [], FRICTION[:4])
