@@ -54,8 +54,7 @@ def _interval(one: dict[str, Any]) -> tuple[str, str]:
 def sentences(result: dict[str, Any]) -> list[str]:
     """What is not determined, what is known only together, and whether the map has the shape of the model."""
     said = [
-        f"Not determined: {name}, which keeps {number(result['parameters'][name]['value'], 5)} "
-        f"{result['parameters'][name]['unit']}: {why}."
+        f"Not determined: {name}, which keeps {_amount(result['parameters'][name])}: {why}."
         for name, why in result["undetermined"].items()
     ]
     for name, one in result["parameters"].items():
@@ -70,6 +69,11 @@ def sentences(result: dict[str, Any]) -> list[str]:
                 f"each is known within its interval, and their errors go {together}."
             )
     return [*said, map_sentence(result["map"])]
+
+
+def _amount(one: dict[str, Any]) -> str:
+    """Value and unit."""
+    return number(one["value"], 5) + (f" {one['unit']}" if one["unit"] != "1" else "")
 
 
 def map_sentence(found: dict[str, Any]) -> str:

@@ -80,10 +80,12 @@ def _check_out(options: argparse.Namespace) -> None:
 
 
 def _with_added(model: "Model", options: argparse.Namespace) -> "Model":
-    """The model with the effects that options add, right behind LuGre friction."""
+    """The model with the effects that options add, right behind LuGre friction and without effect until fitted."""
     wanted = [effect for option, effect in ADDABLE.items() if getattr(options, option)]
     added = [effect for effect in wanted if effect not in model.effects]
     if not added or "lugre_friction" not in model.effects:
         return model
     at = model.effects.index("lugre_friction") + 1
-    return model.with_effects([*model.effects[:at], *added, *model.effects[at:]])
+    larger = model.with_effects([*model.effects[:at], *added, *model.effects[at:]])
+    new = {name: larger.specification(name).neutral for name in larger.parameters if name not in model.parameters}
+    return larger.with_parameters({name: value for name, value in new.items() if value is not None})

@@ -170,13 +170,15 @@ def test_what_is_refused(
     assert error.count("\n") == 1
 
 
-def test_viscous_friction_is_added_and_fitted(bags: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
-    """The machine has none: the answer is a coefficient near zero, and a file with the effect in it."""
+def test_effects_are_added_and_fitted_or_do_nothing(bags: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    """The machine has no viscous friction, and three runs do not show the exponent: the file says both."""
     monkeypatch.chdir(bags.parent)
-    bags_named = [f"runs/run_{k}" for k in (0, 2, 5)]
-    options = ["--model", "wrong.yaml", "--viscous", "--out", "viscous.yaml", "--overwrite", "--quiet"]
-    assert main(["identify", *bags_named, *options]) in (0, 1)
-    model = load_model("viscous.yaml")
-    at = model.effects.index("viscous_friction")
-    assert model.effects[at - 1] == "lugre_friction"
-    assert "viscous_friction.coefficient" in capsys.readouterr().out
+    named = [f"runs/run_{k}" for k in (0, 2, 5)]
+    options = ["--viscous", "--stribeck-exponent", "--out", "added.yaml", "--quiet"]
+    assert main(["identify", *named, "--model", "paper", *options]) == 1
+    model = load_model("added.yaml")
+    at = model.effects.index("lugre_friction")
+    assert model.effects[at + 1 : at + 3] == ("viscous_friction", "stribeck_shape")
+    assert 0.0 <= model["viscous_friction.coefficient"] < 6.0
+    assert model["stribeck_shape.exponent"] == 2.0
+    assert "Not determined: stribeck_shape.exponent, which keeps 2: needs steady points" in capsys.readouterr().out
