@@ -8,6 +8,7 @@ from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 DEFAULT_MACHINE = PathJoinSubstitution([FindPackageShare("pneumo_ros"), "config", "axis.yaml"])
@@ -34,7 +35,7 @@ def generate_launch_description() -> LaunchDescription:
         package="pneumo_ros",
         executable="recorder",
         namespace=namespace,
-        parameters=[{"output": record}],
+        parameters=[{"output": ParameterValue(record, value_type=str)}],
         output="screen",
         condition=IfCondition(PythonExpression(["'", record, "' != ''"])),
     )

@@ -7,6 +7,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 
 ARGUMENTS = [
     DeclareLaunchArgument("namespace", default_value="", description="namespace of the cylinder; empty for none"),
@@ -16,11 +17,12 @@ ARGUMENTS = [
 
 def generate_launch_description() -> LaunchDescription:
     """The recorder alone."""
+    output = ParameterValue(LaunchConfiguration("output"), value_type=str)  # YAML takes 2030_01_02 for a number
     recorder = Node(
         package="pneumo_ros",
         executable="recorder",
         namespace=LaunchConfiguration("namespace"),
-        parameters=[{"output": LaunchConfiguration("output")}],
+        parameters=[{"output": output}],
         output="screen",
     )
     return LaunchDescription([*ARGUMENTS, recorder])

@@ -1,0 +1,162 @@
+"""Reads launch files without ROS's launch, of which there are no wheels: those few parts of it that ours use.
+
+`commands` gives what `ros2 launch` would start, as commands of Python modules. Where launch refuses something, an
+assertion fails here, and what these classes do not know is an error.
+"""
+
+import importlib.util
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+from unittest import mock
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+Arguments = Mapping[str, str]
+
+
+class _Substitution:
+    """Text that depends on the launch arguments."""
+
+    def __init__(self, content: Any) -> None:
+        self.content = content
+
+    def perform(self, arguments: Arguments) -> str:
+        raise NotImplementedError
+
+
+class LaunchConfiguration(_Substitution):
+    def perform(self, arguments: Arguments) -> str:
+        return arguments[self.content]
+
+
+class FindPackageShare(_Substitution):
+    def perform(self, arguments: Arguments) -> str:
+        assert self.content == "pneumo_ros"
+        return str(ROOT)  # config and launch lie there as they do in the package's share
+
+
+class PathJoinSubstitution(_Substitution):
+    def perform(self, arguments: Arguments) -> str:
+        return str(Path(*(_text(part, arguments) for part in self.content)))
+
+
+class PythonExpression(_Substitution):
+    def perform(self, arguments: Arguments) -> str:
+        return str(eval(_text(self.content, arguments), {}))
+
+
+class ParameterValue:
+    def __init__(self, value: Any, *, value_type: type) -> None:
+        self.value, self.value_type = value, value_type
+
+
+class DeclareLaunchArgument:
+    def __init__(self, name: str, *, default_value: Any = None, description: str) -> None:
+        self.name, self.default = name, default_value
+
+
+class IfCondition:
+    def __init__(self, expression: Any) -> None:
+        self.expression = expression
+
+    def holds(self, arguments: Arguments) -> bool:
+        said = _text(self.expression, arguments).strip().lower()
+        assert said in ("true", "1", "false", "0"), f"launch takes no condition '{said}'"
+        return said in ("true", "1")
+
+
+class Node:
+    def __init__(
+        self,
+        *,
+        package: str,
+        executable: str,
+        namespace: Any,
+        parameters: list[Any],
+        output: str,
+        condition: IfCondition | None = None,
+    ) -> None:
+        assert package == "pneumo_ros"
+        self.executable, self.namespace, self.parameters, self.condition = executable, namespace, parameters, condition
+
+
+MODULES = {
+    "launch": {"LaunchDescription": list},
+    "launch.actions": {"DeclareLaunchArgument": DeclareLaunchArgument},
+    "launch.conditions": {"IfCondition": IfCondition},
+    "launch.substitutions": {
+        "LaunchConfiguration": LaunchConfiguration,
+        "PathJoinSubstitution": PathJoinSubstitution,
+        "PythonExpression": PythonExpression,
+    },
+    "launch_ros": {},
+    "launch_ros.actions": {"Node": Node},
+    "launch_ros.parameter_descriptions": {"ParameterValue": ParameterValue},
+    "launch_ros.substitutions": {"FindPackageShare": FindPackageShare},
+}
+
+
+def commands(file: str, place: Path, **given: object) -> dict[str, list[str]]:
+    """Commands by "namespace/executable" that launch/`file` starts with the arguments given.
+
+    Parameters go to files in `place`, as launch writes them.
+    """
+    entities = _load(file).generate_launch_description()
+    declared = {entity.name: entity.default for entity in entities if isinstance(entity, DeclareLaunchArgument)}
+    assert set(given) <= set(declared), f"{file} has the arguments {sorted(declared)}"
+    assert all(str(value) for value in given.values()), "ros2 launch refuses NAME:= without a value"
+    values = {**declared, **given}
+    assert None not in values.values(), f"arguments without default: {values}"
+    arguments = {name: _text(value, {}) for name, value in values.items()}
+    nodes = [entity for entity in entities if isinstance(entity, Node)]
+    wanted = [one for one in nodes if one.condition is None or one.condition.holds(arguments)]
+    return {f"{_text(one.namespace, arguments)}/{one.executable}": _command(one, place, arguments) for one in wanted}
+
+
+def _command(node: Node, place: Path, arguments: Arguments) -> list[str]:
+    namespace = _text(node.namespace, arguments)
+    command = ["-m", f"pneumo_ros.ros.{node.executable}", "--ros-args", "-r", f"__ns:=/{namespace}"]
+    for number, entry in enumerate(node.parameters):
+        path = _text(entry, arguments)
+        if isinstance(entry, dict):
+            path = str(place / f"launch_{namespace}_{node.executable}_{number}.yaml")
+            values = {name: _value(value, arguments) for name, value in entry.items()}
+            Path(path).write_text(yaml.dump({"/**": {"ros__parameters": values}}), encoding="utf-8")
+        command += ["--params-file", path]
+    return command
+
+
+def _value(value: Any, arguments: Arguments) -> Any:
+    """A parameter: a plain value; text of a stated type; other text is what YAML makes of it."""
+    if isinstance(value, _Substitution):
+        return yaml.safe_load(value.perform(arguments))
+    if not isinstance(value, ParameterValue):
+        return value
+    text = _text(value.value, arguments)
+    made = yaml.safe_load(text) if value.value_type is bool else value.value_type(text)
+    assert isinstance(made, value.value_type), f"launch makes no {value.value_type} of '{text}'"
+    return made
+
+
+def _text(value: Any, arguments: Arguments) -> str:
+    if isinstance(value, _Substitution):
+        return value.perform(arguments)
+    if isinstance(value, list):
+        return "".join(_text(part, arguments) for part in value)
+    return str(value)
+
+
+def _load(file: str) -> ModuleType:
+    """The launch file as a module, with the classes above in place of ROS's."""
+    stand_ins = {name: SimpleNamespace(**content) for name, content in MODULES.items()}
+    specification = importlib.util.spec_from_file_location(f"read_{file.partition('.')[0]}", ROOT / "launch" / file)
+    assert specification is not None
+    assert specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    with mock.patch.dict(sys.modules, stand_ins):
+        specification.loader.exec_module(module)
+    return module

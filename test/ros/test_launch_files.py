@@ -1,0 +1,51 @@
+"""Which nodes the launch files start, with which parameters."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+from ros.launching import ROOT, commands
+
+IDENTIFY = {"rig/simulator", "twin/simulator", "rig/experiment", "identified/identification"}
+
+
+def parameters(command: list[str]) -> dict[str, object]:
+    """Those that launch itself writes."""
+    path = Path(command[-1])
+    assert path.name.startswith("launch_")
+    return yaml.safe_load(path.read_text(encoding="utf-8"))["/**"]["ros__parameters"]
+
+
+def test_the_axis_is_a_simulator_and_a_controller_of_the_same_machine(tmp_path: Path) -> None:
+    nodes = commands("axis.launch.py", tmp_path)
+    assert set(nodes) == {"/simulator", "/controller"}
+    for command in nodes.values():
+        assert command[command.index("--params-file") + 1] == str(ROOT / "config" / "axis.yaml")
+
+
+def test_the_axis_is_recorded_if_a_folder_is_named(tmp_path: Path) -> None:
+    nodes = commands("axis.launch.py", tmp_path, record="2030_01_02", namespace="cylinder_1")
+    assert set(nodes) == {"cylinder_1/simulator", "cylinder_1/controller", "cylinder_1/recorder"}
+    assert parameters(nodes["cylinder_1/recorder"]) == {"output": "2030_01_02"}  # which YAML takes for a number
+
+
+def test_the_recorder_alone_needs_a_folder(tmp_path: Path) -> None:
+    (command,) = commands("record.launch.py", tmp_path, output="2030_01_02").values()
+    assert parameters(command) == {"output": "2030_01_02"}
+    with pytest.raises(AssertionError, match="without default"):
+        commands("record.launch.py", tmp_path)
+
+
+def test_a_real_rig_is_not_simulated(tmp_path: Path) -> None:
+    assert set(commands("identify.launch.py", tmp_path)) == IDENTIFY
+    assert set(commands("identify.launch.py", tmp_path, simulate="false")) == IDENTIFY - {"rig/simulator"}
+
+
+def test_the_experiment_is_made_for_the_machine_of_the_twin_and_the_twin_is_the_target(tmp_path: Path) -> None:
+    nodes = commands("identify.launch.py", tmp_path, twin="model_1", twin_params="guess.yaml", folder="1")
+    assert parameters(nodes["rig/experiment"])["model"] == "guess.yaml"
+    assert parameters(nodes["rig/experiment"])["output"] == "1"
+    identification = parameters(nodes["identified/identification"])
+    assert identification["target"] == "/model_1/simulator"
+    assert identification["model"] == "guess.yaml"
+    assert identification["folder"] == "1"
