@@ -13,6 +13,7 @@ sys.path.insert(0, str(TEST))  # the independent simulator under test/rig import
 # Before anything imports rclpy: nodes of this session, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()
 os.environ.update(DOMAIN.environment)
+os.environ.setdefault("FASTDDS_DEFAULT_PROFILES_FILE", str(TEST / "ros" / "quick_discovery.xml"))
 LOGS = tempfile.TemporaryDirectory(prefix="pneumo_ros_log_")  # vanishes with the session
 os.environ["ROS_LOG_DIR"] = LOGS.name
 os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
