@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.noise import run_noise
-from pneumo_ros.identify.run import PARTS, Run, check_position
+from pneumo_ros.identify.run import Run, check_position
+from pneumo_ros.identify.sensors import driven
 from pneumo_ros.identify.smooth import noise_gain, smooth
 from pneumo_ros.plant import Model
 
@@ -17,6 +18,8 @@ HALF_WIDTH = 0.012  # s, of the local polynomials
 # N, how far the balance of forces may be off: a piston that has just stopped rings on its bristle (84 Hz on the default
 # machine) with tens of newtons, which +-12 ms smooth away
 _FORCE = 10.0
+# of how much a state varies that no sensor shows: how far what is driven along may be off
+_UNSURE = 0.3
 
 
 @dataclass(frozen=True)
@@ -35,20 +38,34 @@ def smoothed(run: Run) -> Smoothed:
     return Smoothed(np.stack(columns, axis=1), smooth(y, dt, 1.5 * HALF_WIDTH, 3, 2))
 
 
-def first_guess(model: Model, run: Run, at: Index) -> Array:
-    """States (len(at), states): measured ones smoothed, others driven along, bristles by balance of forces.
+@dataclass(frozen=True)
+class Guess:
+    """First guesses at some grid points of a run (points, states), and their standard deviations (states,)."""
 
-    Raises DataError when the run leaves the stroke of the model.
+    states: Array
+    scale: Array
+
+
+def first_guess(model: Model, run: Run, at: Index) -> Array:
+    """States (len(at), states) of `guess_states`."""
+    return guess_states(model, run, at).states
+
+
+def guess_states(model: Model, run: Run, at: Index) -> Guess:
+    """States at grid points `at`: measured ones smoothed, others driven along, bristles by balance of forces.
+
+    What sensors read is corrected for the model's sensor effects. Raises DataError when the run leaves the stroke of
+    the model.
     """
     check_position(model, run)
     guess = smoothed(run)
     frame = guess.frame[:, : 2 if model.force_driven else 4]
-    rest = model.state()[frame.shape[1] :]
-    states, _ = model.follow(frame, run.input, rest, sample_time=run.sample_time, parts=PARTS)
+    states, _ = driven(model, frame, run)
     chosen: Array = states[at]
     if "z" in model.states:
-        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], guess.acceleration[at])
-    return chosen
+        late = smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)
+        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], (guess.acceleration + late)[at])
+    return Guess(chosen, _scale(model, run, states, frame))
 
 
 def _balance(model: Model, states: Array, held: Array, acceleration: Array) -> None:
@@ -70,13 +87,15 @@ def _deflection_limit(model: Model) -> float:
     return model[f"{section}.static_friction"] / model[f"{section}.bristle_stiffness"]
 
 
-def guess_scale(model: Model, run: Run) -> Array:
-    """Standard deviation (states,) of each state about its first guess."""
+def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
+    """Standard deviation (states,) of each state about its first guess; of the measured ones, of what sensors read."""
     noise = run_noise(run)
-    scale = np.array([max(abs(s), 1.0) * 0.1 for s in model.state()])
+    with np.errstate(over="ignore", invalid="ignore"):
+        scale: Array = np.maximum(np.nan_to_num(_UNSURE * np.std(states, axis=0), posinf=1.0), 1e-9)
+        late = _UNSURE * np.std(states[:, 1] - frame[:, 1])
     for name, column in measured_columns(model).items():
         scale[column] = 3.0 * noise[name]
-    scale[1] = 3.0 * noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1) + 1e-4
+    scale[1] = 3.0 * noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1) + 1e-4 + late
     if "z" in model.states:
         stiffness = model["lugre_friction.bristle_stiffness"]
         scale[model.states.index("z")] = _FORCE / stiffness

@@ -124,6 +124,8 @@ class _Problem:
         self.low, self.high = np.array([s.low for s in specs]), np.array([s.high for s in specs])
         self.threads, self.round = threads, 0
         self.active = np.ones(len(segments), dtype=bool)
+        n = segments.guess.shape[1]
+        self.tail = np.append(np.full(segments.measured[0].size, TAIL), np.full(n, np.inf))
 
     def _parameters(self, theta: Array) -> Array:
         """Parameter vectors (..., parameters) for values (..., free)."""
@@ -132,9 +134,14 @@ class _Problem:
         return values
 
     def _residuals(self, states: Array, theta: Array) -> Array:
-        """Whitened errors (segments, residuals)."""
-        parameters = np.tile(self._parameters(theta), (len(states), 1))
-        return np.asarray(self.segments.residuals(self.model, states, parameters, self.threads)[0])
+        """Whitened errors, then distances of the starts from their guesses (segments, residuals)."""
+        residuals: Array = self._lanes(states, np.tile(self._parameters(theta), (len(states), 1)))[0]
+        return residuals
+
+    def _lanes(self, states: Array, parameters: Array) -> Array:
+        """Residuals (copies, segments, residuals) of copies of all segments."""
+        errors = self.segments.residuals(self.model, states, parameters, self.threads)
+        return np.concatenate([errors, self.segments.from_guess(self.model, states, parameters)], axis=2)
 
     def _jacobian(self, states: Array, theta: Array, residuals: Array) -> tuple[Array, Array]:
         """Derivatives (segments, residuals, states) by starts in scales and (..., free) by parameters in priors."""
@@ -144,30 +151,33 @@ class _Problem:
         lanes = np.concatenate([self.segments.probes(states), np.tile(states, (len(theta), 1))])
         values = np.concatenate([np.tile(theta, (n, 1)), shifted])
         parameters = np.repeat(self._parameters(values), count, axis=0)
-        change = self.segments.residuals(self.model, lanes, parameters, self.threads) - residuals
+        change = self._lanes(lanes, parameters) - residuals
         change[:n] /= PROBE
         change[n:] *= (self.prior / steps)[:, None, None]
         moved = np.moveaxis(change, 0, 2)
         return moved[..., :n], moved[..., n:]
 
     def _cost(self, residuals: Array, states: Array, theta: Array) -> float:
-        start, moved = self.segments.from_guess(states), (theta - self.base) / self.prior
-        each = np.sum(_loss(residuals), axis=1) + 0.5 * np.sum(start[0] ** 2, axis=1)
-        return float(np.sum(each[self.active]) + 0.5 * np.sum(moved**2))
+        moved = (theta - self.base) / self.prior
+        return float(np.sum(self._losses(residuals)[self.active]) + 0.5 * np.sum(moved**2))
+
+    def _losses(self, residuals: Array) -> Array:
+        """Loss (segments,) of whitened errors and of distances from guesses, these squared however far."""
+        return np.asarray(np.sum(_loss(residuals, self.tail), axis=1))
 
     def _blocks(self, states: Array, theta: Array, residuals: Array) -> tuple[Array, ...]:
         """Normal equations segment by segment: parameters (S, p, p), cross (S, p, n), starts (S, n, n), gradients."""
         by_state, by_theta = self._jacobian(states, theta, residuals)
-        weight = (_weight(residuals) * self.active[:, None])[..., None]
-        state_t, theta_t = (np.swapaxes(part * weight, 1, 2) for part in (by_state, by_theta))
-        n = states.shape[1]
-        start = self.segments.from_guess(states)[0]
+        active = self.active[:, None, None]
+        weight = _weight(residuals, self.tail)[..., None] * active
+        weight[:, -states.shape[1] :] = 1.0  # starts of segments left out go where they were guessed
+        state_t, theta_t = (np.swapaxes(part * weight, 1, 2) for part in (by_state, by_theta * active))
         return (
             theta_t @ by_theta,
             theta_t @ by_state,
-            state_t @ by_state + np.eye(n),
+            state_t @ by_state,
             (theta_t @ residuals[..., None])[..., 0],
-            (state_t @ residuals[..., None])[..., 0] + start,
+            (state_t @ residuals[..., None])[..., 0],
         )
 
     def _steps(self, theta: Array) -> Array:
@@ -181,7 +191,7 @@ class _Problem:
         A segment whose breakaway is predicted too early or too late sits in a valley of its own, which no descent
         leaves: between rounds every segment's start is fitted afresh from its guess, and the better of both is kept.
         """
-        states, theta = self.segments.guess.copy(), self.base.copy()
+        states, theta = self.segments.seated(self.model), self.base.copy()
         costs: list[float] = []
         for self.round in range(_ROUNDS):
             states, theta, course = self._descend(states, theta, progress)
@@ -201,15 +211,12 @@ class _Problem:
         """The better start of each segment: the one at hand, or one fitted afresh from its guess."""
         values = {name: float(v) for name, v in zip(self.names, theta, strict=True)}
         fresh = fit_starts(self.model.with_parameters(values), self.segments)
-        here, there = (
-            np.sum(_loss(self._residuals(x, theta)), axis=1) + 0.5 * np.sum(self.segments.from_guess(x)[0] ** 2, axis=1)
-            for x in (states, fresh)
-        )
+        here, there = (self._losses(self._residuals(x, theta)) for x in (states, fresh))
         return np.where((there < here)[:, None], fresh, states)
 
     def _outliers(self, states: Array, theta: Array) -> NDArray[np.bool_]:
         """Segments whose loss is far above the median, the worst twentieth at most."""
-        each = np.sum(_loss(self._residuals(states, theta)), axis=1)
+        each = self._losses(self._residuals(states, theta))
         most = max(len(each) // 20, 1)
         far = each > OUTLYING * np.median(each)
         return np.asarray(far & (each >= np.sort(each)[-most]))
@@ -275,13 +282,14 @@ class _Problem:
         )
 
 
-def _loss(residuals: Array) -> Array:
+def _loss(residuals: Array, tail: Array) -> Array:
     size = np.abs(residuals)
-    return np.where(size < TAIL, 0.5 * size**2, TAIL * (size - 0.5 * TAIL))
+    square = np.minimum(size, tail)
+    return np.asarray(square * (size - 0.5 * square))
 
 
-def _weight(residuals: Array) -> Array:
-    return np.asarray(np.minimum(1.0, TAIL / np.maximum(np.abs(residuals), 1e-300)))
+def _weight(residuals: Array, tail: Array) -> Array:
+    return np.asarray(np.minimum(1.0, tail / np.maximum(np.abs(residuals), 1e-300)))
 
 
 def _eliminate(A: Array, B: Array, C: Array, g: Array, h: Array) -> tuple[Array, Array]:

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.identify.guess import first_guess, guess_scale, measured_columns
+from pneumo_ros.identify.guess import guess_states, measured_columns
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.sensing import sense
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -23,19 +24,23 @@ _WRONG = 1e9  # noise deviations: the most an error counts, so that its square s
 class Segments:
     """Segments of equal length; arrays hold one row per segment.
 
-    first: index of each segment's first entry in `voltage`, the inputs of all runs one after another; measured and
+    first: index of each segment's first entry in `voltage`, the inputs of all runs one after another; start [s]: when
+    voltage[0] would be by the clock of the segment's run; measured and
     weight (segments, samples, signals), weight = 1 / noise, or 0 where nothing was measured; guess and scale
-    (segments, states): initial states and their prior deviations; columns: the states that the signals show.
+    (segments, states): initial states and their prior deviations; shown (segments, signals): what sensors read at the
+    guess, so as the model then was; columns: the states that the signals show.
     """
 
     sample_time: float
     samples: int
     voltage: Array
     first: Index
+    start: Array
     measured: Array
     weight: Array
     guess: Array
     scale: Array
+    shown: Array
     columns: tuple[int, ...]
     run: Index  # which run each segment is from
 
@@ -44,7 +49,7 @@ class Segments:
 
     def pick(self, chosen: Index) -> "Segments":
         """Some of the segments, by index."""
-        rows = ("first", "measured", "weight", "guess", "scale", "run")
+        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "run")
         return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
 
     def probes(self, states: Array) -> Array:
@@ -54,15 +59,38 @@ class Segments:
             moved[j, :, j] += PROBE * self.scale[:, j]
         return moved.reshape(-1, states.shape[1])
 
-    def from_guess(self, states: Array) -> Array:
-        """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states)."""
-        return np.asarray((states.reshape(-1, *self.guess.shape) - self.guess) / self.scale)
+    def from_guess(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states).
+
+        For the measured ones it is the readings that are compared, which do not depend on what the sensors' effects
+        were taken to be when the guess was made.
+        """
+        apart = states.reshape(-1, *self.guess.shape) - self.guess
+        if not model.composition.true_sensors:
+            apart[..., self.columns] = self._read_at_start(model, states, parameters) - self.shown
+        return np.asarray(apart / self.scale)
+
+    def seated(self, model: Model) -> Array:
+        """The guesses (segments, states), with the measured states moved to where the sensors of `model` show them."""
+        states: Array = self.guess.copy()
+        for _ in range(0 if model.composition.true_sensors else 3):
+            states[:, self.columns] += self.shown - self._read_at_start(model, states)[0]
+        return states
+
+    def _read_at_start(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        copies = len(states) // max(len(self), 1)
+        read = sense(
+            model, states[:, None], parameters, self.voltage, np.tile(self.first, copies),
+            sample_time=self.sample_time, start=np.tile(self.start - self.sample_time, copies), parts=PARTS,
+        )  # fmt: skip
+        return read.reshape(-1, *self.shown.shape)
 
     def simulate(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
         """(lanes, samples, states) from initial states (lanes, states), lanes a multiple of the segments."""
+        copies = len(states) // len(self)
         return model.simulate_lanes(
-            self.voltage, states, parameters, samples=self.samples, sample_time=self.sample_time, parts=PARTS,
-            first=np.tile(self.first, len(states) // len(self)), threads=threads,
+            self.voltage, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
+            sample_time=self.sample_time, start=np.tile(self.start, copies), parts=PARTS, threads=threads,
         )  # fmt: skip
 
     def residuals(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
@@ -71,8 +99,10 @@ class Segments:
         states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
         """
         copies = len(states) // len(self)
-        predicted = self.simulate(model, states, parameters, threads)[:, :, self.columns]
-        predicted = predicted.reshape(copies, len(self), self.samples, -1)
+        predicted = sense(
+            model, self.simulate(model, states, parameters, threads), parameters, self.voltage,
+            np.tile(self.first, copies), sample_time=self.sample_time, start=np.tile(self.start, copies), parts=PARTS,
+        ).reshape(copies, len(self), self.samples, -1)  # fmt: skip
         error = ((predicted - self.measured) * self.weight).reshape(copies, len(self), -1)
         return np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
 
@@ -100,19 +130,23 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
         noise = run_noise(run)
         measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
         weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
+    guesses = [guess_states(model, run, begin) for run, begin in zip(runs, starts, strict=True)]
     counts = [len(begin) for begin in starts]
-    return Segments(
+    segments = Segments(
         sample_time=dt,
         samples=samples,
         voltage=np.concatenate([run.input for run in runs]),
         first=np.concatenate([b * PARTS + o for b, o in zip(starts, offsets[:-1], strict=True)]).astype(np.int64),
+        start=np.repeat(-dt / PARTS * offsets[:-1], counts),
         measured=np.concatenate(measured),
         weight=np.concatenate(weight),
-        guess=np.concatenate([first_guess(model, run, begin) for run, begin in zip(runs, starts, strict=True)]),
-        scale=np.repeat([guess_scale(model, run) for run in runs], counts, axis=0),
+        guess=np.concatenate([guess.states for guess in guesses]),
+        scale=np.concatenate([np.tile(guess.scale, (len(guess.states), 1)) for guess in guesses]),
+        shown=np.zeros((sum(counts), len(names))),
         columns=tuple(names.values()),
         run=np.repeat(np.arange(len(runs)), counts),
     )
+    return replace(segments, shown=segments._read_at_start(model, segments.guess)[0])
 
 
 def side_by_side(run: Run, samples: int) -> Index:

@@ -38,7 +38,7 @@ def start_states(model: Model, run: Run, at: Index) -> Array:
 
 def fit_starts(model: Model, segments: Segments) -> Array:
     """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself."""
-    x: Array = segments.guess.copy()
+    x = segments.seated(model)
     damping = np.full(len(x), 1e-3)
     residual = _residuals(model, segments, x)[0]
     active = np.arange(len(x))
@@ -68,4 +68,4 @@ def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: 
 
 def _residuals(model: Model, segments: Segments, states: Array) -> Array:
     """(copies, windows, samples * signals + states): whitened errors and distances from the guess."""
-    return np.concatenate([segments.residuals(model, states), segments.from_guess(states)], axis=2)
+    return np.concatenate([segments.residuals(model, states), segments.from_guess(model, states)], axis=2)

@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.identify.guess import measured_columns
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.segments import side_by_side
 from pneumo_ros.identify.start import start_states
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.sensing import sense
 
 Array = NDArray[np.float64]
 
@@ -18,8 +20,8 @@ Array = NDArray[np.float64]
 class Prediction:
     """Simulated against measured over windows: grid index of each window's start, and errors by signal name.
 
-    errors[name] has shape (windows, samples), model minus measurement in the signal's unit, NaN where nothing was
-    measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
+    errors[name] has shape (windows, samples), what the model's sensor would read minus measurement in the signal's
+    unit, NaN where nothing was measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
     """
 
     start: NDArray[np.int64]
@@ -58,12 +60,12 @@ def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: in
         run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
         sample_time=run.sample_time, parts=PARTS,
     )  # fmt: skip
+    read = sense(model, states, None, run.input, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
     rows = starts[:, None] + np.arange(1, samples + 1)
     hidden = np.where(run.measured[rows], 0.0, np.nan)
-    columns = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
     errors = {
-        name: states[:, :, model.states.index(columns[name])] - signal[rows] + hidden
-        for name, signal in run.signals.items()
-        if columns[name] in model.states
+        name: read[:, :, i] - run.signals[name][rows] + hidden
+        for i, name in enumerate(measured_columns(model))
+        if name in run.signals
     }
     return Prediction(starts, run.sample_time, errors, states)

@@ -27,16 +27,22 @@ OBSERVED = (
     "drive", "force", "friction", "opening", "port_flow_a", "port_flow_b", "y_measured", "p_a_measured", "p_b_measured",
 )  # fmt: skip
 _OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "y_measured")
+SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # what a sensor reads unless effects differ
 
 
 @dataclass(frozen=True)
 class Composition:
-    """Effects put together: states and parameters in kernel order, what can be observed, and the module text."""
+    """Effects put together: states and parameters in kernel order, what can be observed, and the module text.
+
+    `sensed` holds the states that sensors show; `true_sensors` says that they show them as they are.
+    """
 
     effects: tuple[type[Effect], ...]
     states: tuple[str, ...]
     parameters: tuple[str, ...]  # dotted
     observed: tuple[str, ...]
+    sensed: tuple[str, ...]
+    true_sensors: bool
     text: str
 
     def parameter(self, dotted: str) -> Parameter:
@@ -50,7 +56,8 @@ class Composition:
 
 # names the generated module uses itself
 _WORDS = """x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts steps values np math LANES
-entry inline derivatives after_step observation step step_lanes run run_lanes follow rates observe"""
+entry inline derivatives after_step observation sensing step step_lanes run run_lanes follow rates observe sense
+interval"""
 _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 
 
@@ -146,4 +153,8 @@ def compose(effects: tuple[type[Effect], ...]) -> Composition:
     parameters = tuple(f"{effect.name}.{key}" for effect in effects for key in effect.parameters)
     states = tuple(resolver.states)
     observed = OBSERVED if {"p_a", "p_b"} <= set(states) else _OBSERVED_WITHOUT_CHAMBERS
-    return Composition(effects, states, parameters, observed, module_text(resolver, parameters, observed))
+    signals = tuple(name for name, state in SENSED.items() if state in states)
+    true_sensors = not any(name in resolver.writers for name in signals)
+    text = module_text(resolver, parameters, observed, () if true_sensors else signals)
+    sensed = tuple(SENSED[name] for name in signals)
+    return Composition(effects, states, parameters, observed, sensed, true_sensors, text)

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from pneumo_ros.plant import maths
-from pneumo_ros.plant.entries import LANES, follow_text, lanes_text, pointwise_text, run_text
+from pneumo_ros.plant.entries import LANES, follow_text, lanes_text, pointwise_text, run_text, sense_text
 from pneumo_ros.plant.flow import FlowWriter
 from pneumo_ros.plant.source import SourceBook
 from pneumo_ros.plant.stepping import step_text
@@ -23,8 +23,10 @@ LANES = {lanes}
 '''
 
 
-def module_text(resolver: "Resolver", parameters: tuple[str, ...], observed: tuple[str, ...]) -> str:
-    """Text of the whole module for the effects known to `resolver`."""
+def module_text(
+    resolver: "Resolver", parameters: tuple[str, ...], observed: tuple[str, ...], sensed: tuple[str, ...]
+) -> str:
+    """Text of the whole module for the effects known to `resolver`; `sensed`: the signals that its sensors alter."""
     book = SourceBook()
     names = [dotted.replace(".", "__") for dotted in parameters]
     states = list(resolver.states)
@@ -33,13 +35,16 @@ def module_text(resolver: "Resolver", parameters: tuple[str, ...], observed: tup
     book.helper(maths.damped, "the integrator")
     derivatives = _derivatives(resolver, book, states, rates, names)
     after = _after_step(resolver, book, states, names)
-    observation = _observation(resolver, book, states, observed, names)
+    observation = _observation("observation", resolver, book, states, observed, names)
+    sensing = _observation("sensing", resolver, book, states, sensed, names) if sensed else ""
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
     parts += [step_text(resolver, states, rates, names), run_text(states, names), lanes_text(states, names)]
     parts += [follow_text(resolver, states, rates, names)]
     parts += [pointwise_text("rates", "derivatives", states, len(states), names)]
     parts += [pointwise_text("observe", "observation", states, len(observed), names)]
+    if sensed:
+        parts += [sensing, sense_text(states, len(sensed), names)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -64,8 +69,8 @@ def _after_step(resolver: "Resolver", book: SourceBook, states: list[str], names
 
 
 def _observation(
-    resolver: "Resolver", book: SourceBook, states: list[str], observed: tuple[str, ...], names: list[str]
+    name: str, resolver: "Resolver", book: SourceBook, states: list[str], observed: tuple[str, ...], names: list[str]
 ) -> str:
     flow = FlowWriter(resolver, book)
-    returns = [flow.value(name) for name in observed]
-    return _function("observation", [*states, "U", "t", *names], flow.lines, returns)
+    returns = [flow.value(signal) for signal in observed]
+    return _function(name, [*states, "U", "t", *names], flow.lines, returns)

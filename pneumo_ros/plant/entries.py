@@ -121,3 +121,23 @@ def {name}(X, q, voltage, t, out):
     for k in range(X.shape[0]):
         values = {function}({", ".join(arguments)})
 {store}'''
+
+
+def sense_text(states: list[str], width: int, names: list[str]) -> str:
+    """The entry point that says what the sensors read along many lanes, each with its own parameters."""
+    arguments = [f"X[b, k, {i}]" for i in range(len(states))] + ["U", "t", *names]
+    unpack = "\n".join(f"        {name} = q[b, {i}]" for i, name in enumerate(names))
+    store = "\n".join(f"            out[b, k, {i}] = values[{i}]" for i in range(width))
+    return f'''@entry
+def sense(X, q, voltage, first, t0, interval, parts, out):
+    """What the sensors read at every row of X (lanes, samples, states) into out (lanes, samples, {width}).
+
+    q (lanes, parameters); first, t0 (lanes,) as in `run_lanes`; samples are `interval` apart.
+    """
+    for b in range(X.shape[0]):
+{unpack}
+        for k in range(X.shape[1]):
+            U = voltage[first[b] + (k + 1) * parts - 1]
+            t = t0[b] + (k + 1) * interval
+            values = sensing({", ".join(arguments)})
+{store}'''

@@ -203,7 +203,7 @@ class Model:
         first: ArrayLike | None = None,
         sample_time: float = 1e-3,
         step: float = STEP,
-        start: float = 0.0,
+        start: ArrayLike = 0.0,
         parts: int = 1,
         threads: int = 1,
     ) -> Array:
@@ -228,7 +228,7 @@ class Model:
         if begin.min(initial=0) < 0 or last + count * parts > len(held):
             raise UsageError(f"lanes reach beyond the {len(held)} voltages given")
         stride, h = substeps(sample_time / parts, step)
-        t0 = start + begin.astype(float) * (sample_time / parts)
+        t0 = np.asarray(start, dtype=float) + begin * (sample_time / parts)
         return run_lanes(self.kernel, x, q, held, begin, t0, h, stride, parts, count, threads)
 
     def follow(
