@@ -10,6 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 
+from pneumo_ros.errors import DataError
+from pneumo_ros.records import Bag
+
 ROOT = Path(__file__).parents[2]
 PATIENCE = 30.0  # s
 
@@ -74,6 +77,14 @@ def node(name: str, *ros_args: str, **parameters: object) -> list[str]:
     """Command of a node with ROS parameters."""
     given = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_yaml(value)}")]
     return ["-m", f"pneumo_ros.ros.{name}", "--ros-args", *ros_args, *given]
+
+
+def recorded(path: Path, topic: str) -> int:
+    """How many messages of `topic` are on the disk so far."""
+    try:
+        return Bag(path).overview().counts.get(topic, 0)
+    except DataError:  # no file yet, or no message in it
+        return 0
 
 
 def publisher(count: int, *more: str) -> list[str]:

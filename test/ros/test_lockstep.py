@@ -14,7 +14,7 @@ LOCKSTEP = {
     "quantisation_pressure": 10.0,
 }
 SINE = {"reference.shape": "sine", "reference.amplitude": 0.2, "reference.frequency": 0.2}
-SPAN = 6.0  # s of simulated time
+SPAN = 3.0  # s of simulated time
 
 Samples = dict[int, tuple[float, float, float]]
 

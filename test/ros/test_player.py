@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ros.processes import Running, node, running
+from ros.processes import PATIENCE, Running, node, recorded, running
 
 from pneumo_ros.records import Bag, BagTopic, BagWriter, encoding, read_recording, read_topics, write_recording
 
@@ -36,15 +36,24 @@ def payloads(path: Path) -> dict[str, list[bytes]]:
     return found
 
 
-def replay(folder: Path, player: list[str], topics: list[str], end: int | None = None, seconds: float = 0.0) -> Running:
-    """Run a player and a recorder of `topics` into folder/copy; the player ends by itself, or by signal `end`."""
+def copied(folder: Path, topic: str, count: int) -> None:
+    """Until folder/copy holds so many messages."""
+    deadline = time.monotonic() + PATIENCE
+    while recorded(folder / "copy", topic) < count:
+        assert time.monotonic() < deadline, f"never {count} messages on {topic}"
+        time.sleep(0.05)
+
+
+def replay(folder: Path, player: list[str], topics: list[str], end: int | None = None, count: int = 0) -> Running:
+    """Run a player and a recorder of `topics` into folder/copy; the player ends by itself, or by signal `end` when
+    `count` messages of the first topic have come.
+    """
     recorder = node("recorder", output=folder / "copy", topics=topics)
     with running(*recorder, cwd=folder) as copying:
         copying.wait_for("recording to")
         with running(*player, cwd=folder) as playing:
             if end is not None:
-                playing.wait_for("playing")
-                time.sleep(seconds)
+                copied(folder, topics[0], count)
             assert playing.end(end) == 0, playing.said
         time.sleep(0.3)
         assert copying.end() == 0
@@ -56,10 +65,10 @@ def test_what_was_recorded_comes_again(tmp_path: Path, recording: Path) -> None:
     playing = replay(tmp_path, node("player", input=recording), ["/axis/*"])
     assert payloads(tmp_path / "copy") == payloads(recording)
     assert f"played {sum(Bag(recording).overview().counts.values())} messages" in playing.said
-    copied = read_recording(tmp_path / "copy")
-    assert len(copied) > N // 2
-    np.testing.assert_array_equal(copied.position, SIGNALS["position"][-len(copied) :])
-    assert copied.description == DESCRIPTION
+    copy = read_recording(tmp_path / "copy")
+    assert len(copy) > N // 2
+    np.testing.assert_array_equal(copy.position, SIGNALS["position"][-len(copy) :])
+    assert copy.description == DESCRIPTION
     assert Bag(tmp_path / "copy").overview().channels["/axis/description"].latched
 
 
@@ -86,7 +95,7 @@ def test_late_subscribers_get_the_description(tmp_path: Path, recording: Path) -
         with running(
             *node("recorder", output=tmp_path / "copy", topics=["/axis/description"]), cwd=tmp_path
         ) as copying:
-            time.sleep(5.0)
+            copied(tmp_path, "/axis/description", 1)
             assert copying.end() == 0
         assert playing.end(signal.SIGTERM) == 0
     assert payloads(tmp_path / "copy") == {"/axis/description": payloads(recording)["/axis/description"]}
@@ -94,10 +103,10 @@ def test_late_subscribers_get_the_description(tmp_path: Path, recording: Path) -
 
 def test_a_loop_goes_on_until_it_is_told_to_end(tmp_path: Path, recording: Path) -> None:
     player = node("player", input=recording, loop=True, rate=5, topics=["/axis/joint_states"], wait=10)
-    playing = replay(tmp_path, player, ["/axis/joint_states"], end=signal.SIGINT, seconds=4.5)
     once = payloads(recording)["/axis/joint_states"]
+    playing = replay(tmp_path, player, ["/axis/joint_states"], end=signal.SIGINT, count=2 * len(once) + 1)
     copy = payloads(tmp_path / "copy")["/axis/joint_states"]
-    assert len(copy) > len(once)
+    assert len(copy) > 2 * len(once)
     assert copy == (once * 50)[: len(copy)]
     assert f"played {len(copy)} messages" in playing.said
 
