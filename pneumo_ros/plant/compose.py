@@ -24,9 +24,10 @@ from pneumo_ros.plant.emit import module_text
 from pneumo_ros.plant.signals import SIGNALS
 
 OBSERVED = (
-    "drive", "force", "friction", "opening", "port_flow_a", "port_flow_b", "y_measured", "p_a_measured", "p_b_measured",
+    "drive", "force", "friction", "static_level", "added_mass", "opening", "port_flow_a", "port_flow_b",
+    "y_measured", "p_a_measured", "p_b_measured",
 )  # fmt: skip
-_OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "y_measured")
+_OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "static_level", "added_mass", "y_measured")
 SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # what a sensor reads unless effects differ
 
 

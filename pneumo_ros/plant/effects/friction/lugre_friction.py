@@ -45,6 +45,10 @@ class LugreFriction(Effect):
         resistance = bristle_damping
         return friction, resistance, der_z, rate_z
 
+    def outputs(friction_scale, friction_rise, static_rise, static_friction):
+        static_level = friction_scale * static_friction + friction_rise + static_rise
+        return static_level
+
     def advance(
         v, z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness,
     ):  # fmt: skip
