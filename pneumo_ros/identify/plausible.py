@@ -16,7 +16,9 @@ from pneumo_ros.identify.weak import equation_residuals
 from pneumo_ros.plant import Model
 
 _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
-_POOR = 0.5  # share of a signal's size from which on a residual is worth asking what is wrong
+_GROWS = 1.5  # times larger residuals of a chamber, that disprove it: hidden friction or a closed valve looked like it
+_POOR = 0.2  # share of a signal's size from which on a residual is worth asking what is wrong
+_MOVES = 0.01  # m, without which leaks look like an exchange or a reversal
 _VENTED = 0.5  # of the atmosphere's pressure: no running axis has an emptier chamber
 _BLOCK = 0.05  # s
 _UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
@@ -52,7 +54,11 @@ def _mistake(model: Model, run: Run) -> str | None:
     vented = not model.force_driven and low < 0.95 * model["air.atmospheric_pressure"]
     if not vented and not _poor(model, run, recorded):
         return None
-    tried = {mistake: _residuals(model, mistake.undo(run)) for mistake in _mistakes(model)}
+    moves = np.ptp(run.position) > _MOVES
+    possible = [mistake for mistake in _mistakes(model) if moves or mistake.word == "gauge"]
+    if not possible:
+        return None
+    tried = {mistake: _residuals(model, mistake.undo(run)) for mistake in possible}
     gains = {mistake: _gain(recorded, undone) for mistake, undone in tried.items()}
     best = max(gains, key=lambda mistake: gains[mistake])
     empty = best.word == "gauge" and low < _VENTED * model["air.atmospheric_pressure"]
@@ -106,9 +112,11 @@ def _residuals(model: Model, run: Run) -> dict[str, float]:
 
 
 def _gain(recorded: dict[str, float], undone: dict[str, float]) -> float:
-    """How many times smaller the residuals become, geometric mean over the equations."""
+    """How many times smaller the residuals become, geometric mean over the equations; 0 when a chamber's grows."""
     both = [name for name in recorded if name in undone]
-    return float(np.exp(np.mean([np.log(recorded[n] / undone[n]) for n in both]))) if both else 0.0
+    if not both or any(undone[name] > _GROWS * recorded[name] for name in both if name != "momentum"):
+        return 0.0
+    return float(np.exp(np.mean([np.log(recorded[n] / undone[n]) for n in both])))
 
 
 def _poor(model: Model, run: Run, recorded: dict[str, float]) -> bool:
