@@ -11,7 +11,7 @@ _VACUUM, _MOST = 1e4, 1e7  # Pa: no chamber of a pneumatic axis is emptier, or f
 _USUAL = 5e4  # Pa, which the pressures of a running axis reach, gauge or absolute
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
 # the highest value of a running axis, 0.9 to 13 bar, in each unit; the ranges of the units do not overlap much
-_HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 110.0), ("kPa", 1300.0), ("hPa", _VACUUM))
+_HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 145.0), ("kPa", 1300.0), ("hPa", _VACUUM))
 
 
 def check_use(recording: Recording, force_driven: bool) -> None:

@@ -1,0 +1,141 @@
+"""Recordings read as what they are, and what their numbers alone give away."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from identify.making import recording
+
+from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.records import Recording
+from pneumo_ros.records.clocks import after_turns, jumps
+from pneumo_ros.records.corrections import PRESSURE_UNITS, WORDS, corrected, parse_words
+from pneumo_ros.records.unfit import check_use
+
+N = 2000
+TIME = np.arange(N) * 1e-3
+NOISE = 300.0 * np.random.default_rng(0).normal(size=(2, N))
+SWING = np.sin(2.0 * np.pi * TIME)
+ATMOSPHERE = 1e5
+
+
+def axis(**changes: object) -> Recording:
+    """Pressures of a running axis: 1.06 to 6.4 bar."""
+    signals = {
+        "time": TIME, "position": 0.1 * SWING, "velocity": 0.6 * SWING, "voltage": SWING, "command_time": TIME,
+        "command": SWING, "pressure_a": 3.73e5 + 2.67e5 * SWING + NOISE[0], "supply_pressure": np.full(N, 7e5),
+        "pressure_b": 3.73e5 - 2.67e5 * SWING + NOISE[1],
+    }  # fmt: skip
+    return recording(**(signals | changes))
+
+
+@pytest.mark.parametrize("words", [(word,) for word in WORDS] + [("bar", "gauge", "mm", "swapped-chambers")])
+def test_what_was_recorded_otherwise_is_put_right(words: tuple[str, ...]) -> None:
+    """Recorded as the words say, from what is right, and read back."""
+    right = axis()
+    unit = next((PRESSURE_UNITS[word] for word in words if word in PRESSURE_UNITS), 1.0)
+    below = ATMOSPHERE if "gauge" in words else 0.0
+    a, b, supply = ((p - below) / unit for p in (right.pressure_a, right.pressure_b, right.supply_pressure))
+    length = (1e3 if "mm" in words else 1.0) * (-1.0 if "reversed-position" in words else 1.0)
+    sign = -1.0 if "reversed-voltage" in words else 1.0
+    wrong = replace(
+        right,
+        position=right.position * length,
+        velocity=right.velocity * length,
+        voltage=sign * right.voltage,
+        command=sign * right.command,
+        pressure_a=b if "swapped-chambers" in words else a,
+        pressure_b=a if "swapped-chambers" in words else b,
+        supply_pressure=supply,
+    )
+    mended = corrected(wrong, words, ATMOSPHERE)
+    for name in ("position", "velocity", "voltage", "command", "pressure_a", "pressure_b", "supply_pressure"):
+        np.testing.assert_allclose(getattr(mended, name), getattr(right, name), rtol=1e-12, atol=1e-9, err_msg=name)
+
+
+def test_what_is_not_recorded_stays_so() -> None:
+    pushed = recording(time=TIME, position=SWING, effort=SWING)
+    mended = corrected(pushed, ("bar", "gauge", "reversed-position"), ATMOSPHERE)
+    assert mended.pressure_a is mended.velocity is mended.voltage is None
+    np.testing.assert_array_equal(mended.position, -SWING)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [("", ()), ("bar", ("bar",)), ("KPA, gauge,gauge", ("kPa", "gauge")), ("mm,", ("mm",))]
+)
+def test_words_are_understood(text: str, words: tuple[str, ...]) -> None:
+    assert parse_words(text) == words
+
+
+@pytest.mark.parametrize(("text", "said"), [("swaped", "swapped-chambers"), ("bar,MPa", "not in bar and MPa")])
+def test_words_that_are_refused(text: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        parse_words(text)
+
+
+@pytest.mark.parametrize("unit", PRESSURE_UNITS)
+@pytest.mark.parametrize("gauge", [False, True])
+@pytest.mark.parametrize("size", [0.3, 1.0, 1.3])
+def test_units_are_told_by_the_size_of_the_numbers(unit: str, gauge: bool, size: float) -> None:
+    """From axes at a supply of 2.6 bar to those at 9 bar, and the advice is the option that helps."""
+    right = axis()
+    a, b = (1e5 + size * (p - 1e5) for p in (right.pressure_a, right.pressure_b))
+    wrong = replace(
+        right, pressure_a=(a - gauge * 1e5) / PRESSURE_UNITS[unit], pressure_b=(b - gauge * 1e5) / PRESSURE_UNITS[unit]
+    )
+    with pytest.raises(DataError, match="absolute pressures in Pa are needed") as caught:
+        check_use(wrong, False)
+    word = f"{unit},gauge" if gauge else unit
+    assert f"type --read-as {word}, or multiply" in str(caught.value)
+    check_use(corrected(wrong, parse_words(word), ATMOSPHERE), False)
+
+
+def test_a_unit_that_is_given_without_need() -> None:
+    with pytest.raises(DataError, match=r"more than pneumatics bear.*--read-as"):
+        check_use(corrected(axis(), ("bar",), ATMOSPHERE), False)
+
+
+@pytest.mark.parametrize("offset", [-2e4, 2e4])
+def test_an_offset_of_a_sensor_is_no_gauge_pressure(offset: float) -> None:
+    right = axis()
+    check_use(replace(right, pressure_a=right.pressure_a + offset), False)
+
+
+def ticks(*steps: float) -> np.ndarray:
+    """Times [ns] that go on by these steps [s]."""
+    return np.cumsum([0, *steps]) * 1e9
+
+
+USUAL = [1e-3] * 20
+
+
+@pytest.mark.parametrize(
+    ("stamps", "recorded", "found"),
+    [
+        ([], [], []),
+        ([-3.0], [1e-3], [21]),
+        ([5.0], [1e-3], [21]),
+        ([5.0], [5.0], []),  # a gap, which is bridged
+        ([60.0], [60.0], [21]),
+        ([-0.05], [1e-3], []),  # out of order
+        ([1e-3], [60.0], []),  # simulated time stood still
+        ([1e-3], [-2.0], [21]),
+    ],
+)
+def test_jumps(stamps: list[float], recorded: list[float], found: list[int]) -> None:
+    stamp, log = (ticks(*USUAL, *steps, *USUAL).astype(np.int64) for steps in (stamps, recorded))
+    assert [jump.first for jump in jumps(stamp, log)] == found
+
+
+def test_slow_simulated_time_does_not_jump() -> None:
+    """A gap of 2 s in stamps is one of 20 s by the recorder, at a tenth of real time."""
+    stamp = ticks(*USUAL, 2.0, *USUAL)
+    assert jumps(stamp.astype(np.int64), (10 * stamp).astype(np.int64)) == []
+    assert len(jumps(stamp.astype(np.int64), stamp.astype(np.int64) // 10)) == 0
+
+
+def test_commands_after_the_clock_was_set_back() -> None:
+    log = ticks(1.0, 1.0, -5.0, 1.0).astype(np.int64)
+    assert [x.tolist() for x in after_turns(log, 0, 0)] == [[0, 1, 2], log[:3].tolist()]
+    assert [x.tolist() for x in after_turns(log, 1, -7)] == [[2, 3, 4], [-7, *log[3:].tolist()]]
+    assert [x.tolist() for x in after_turns(log, 2, -7)] == [[4], [-7]]  # none came since
