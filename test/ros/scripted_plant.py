@@ -13,6 +13,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 RATE = 200.0  # Hz
+DEPTH = 1000  # messages that wait, should the machine be busy
 TOP = 0.4  # m/s, at any voltage beyond 0.1 V
 
 
@@ -24,11 +25,12 @@ class ScriptedPlant:
         rclpy.init(context=self.context)
         self.node = rclpy.create_node("scripted", namespace=namespace, context=self.context)
         self.commands: list[float] = []
+        self.stamps: list[int] = []  # ns, of what was sent
         self.position, self.pressure, self.reverse = 0.0, 3e5, False
         self.silent: set[str] = set()
-        self._joint = self.node.create_publisher(JointState, "joint_states", 10)
+        self._joint = self.node.create_publisher(JointState, "joint_states", DEPTH)
         self._pressures = {
-            f"chamber_{c}/pressure": self.node.create_publisher(FluidPressure, f"chamber_{c}/pressure", 10)
+            f"chamber_{c}/pressure": self.node.create_publisher(FluidPressure, f"chamber_{c}/pressure", DEPTH)
             for c in "ab"
         }
         self.node.create_subscription(Float64, "valve/command", lambda one: self.commands.append(one.data), 10)
@@ -51,7 +53,9 @@ class ScriptedPlant:
             self._send()
 
     def _send(self) -> None:
-        stamp = self.node.get_clock().now().to_msg()
+        now = self.node.get_clock().now()
+        self.stamps.append(now.nanoseconds)
+        stamp = now.to_msg()
         for topic, publisher in self._pressures.items():
             message = FluidPressure(fluid_pressure=self.pressure)
             message.header.stamp = stamp

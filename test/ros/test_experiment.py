@@ -19,7 +19,7 @@ from pneumo_ros.experiment.voltages import Constant
 from pneumo_ros.identify.breakaway import find_breakaways
 from pneumo_ros.identify.run import make_run
 from pneumo_ros.plant import load_model
-from pneumo_ros.records import Recording, read_recording
+from pneumo_ros.records import Recording, read_recording, read_topics
 
 AXIS = load_model("axis")
 TRIALS = tuple(Trial(name, Constant(volts), 2.0, 5.0, 0.5) for name, volts in (("right", 1.0), ("left", -1.0)))
@@ -150,9 +150,12 @@ def test_all_trials_of_a_scripted_plant(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "programme.yaml").read_text(encoding="utf-8") == programme_text(PROGRAMME)
     for name, volts in (("right", 1.0), ("left", -1.0)):
         recording = read_recording(tmp_path / "out" / name)
-        assert recording.warnings == ()
         assert recording.voltage is not None
         assert sorted(set(recording.voltage)) == sorted({0.0, volts})
+        for topic in ("joint_states", "chamber_a/pressure", "chamber_b/pressure"):  # everything sent, in between
+            stamps = read_topics(tmp_path / "out" / name)[f"/whole/{topic}"].stamp.tolist()
+            first = plant.stamps.index(stamps[0])
+            assert stamps == plant.stamps[first : first + len(stamps)]
 
 
 FAILURES: dict[str, tuple[Callable[[ScriptedPlant], object], int, str]] = {
