@@ -61,13 +61,16 @@ def started_wrong(model: Model) -> Model:
 def table(truth: Model, results: list[Identification]) -> str:
     """One row per parameter."""
     lines = [f"{'parameter':36s} {'truth':>12s} {'worst error':>12s} {'covered':>9s} {'undetermined':>13s}"]
+    every: list[bool] = []
     for name in (*(n for n in FRICTION if n in truth.parameters), *COEFFICIENTS, *LIMITS, STIFFNESS):
         found = [r.parameters[name] for r in results]
         known = [f for f in found if f.interval is not None]
         worst = max((abs(f.value / truth[name] - 1.0) for f in known), default=float("nan"))
         held = [f.interval[0] <= truth[name] <= f.interval[1] for f in known if f.interval]
+        every += held
         cover = f"{100 * sum(held) / len(held):.0f} %" if held else "-"
         lines.append(f"{name:36s} {truth[name]:12.5g} {100 * worst:10.3f} % {cover:>9s} {len(found) - len(known):13d}")
+    lines.append(f"{'all intervals':36s} {'':12s} {'':12s} {100 * sum(every) / max(len(every), 1):8.1f} %")
     return "\n".join(lines)
 
 
