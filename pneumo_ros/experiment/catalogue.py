@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.experiment import constant_voltage, excitation
+from pneumo_ros.experiment import constant_voltage, excitation, telling
 from pneumo_ros.experiment.programme import Programme
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Model
@@ -41,6 +41,19 @@ EXPERIMENTS = {
         excitation.slow_reversals,
         excitation.SECONDS,
     ),
+    "fast-reversals": Experiment(
+        "cosines of 1 to 3 Hz: masses, delays, friction that lags (pneumo diagnose)", telling.fast_reversals, 20.0
+    ),
+    "full-strokes": Experiment(
+        "the whole way both ways, slowly and fast: friction along the stroke", telling.full_strokes, 20.0
+    ),
+    "pauses": Experiment("moves after pauses of 0.1 to 60 s: friction that grows at rest", telling.pauses, 100.0),
+    "hold": Experiment("20 s at closed valve at several positions: leaks, warm and cold gas", telling.hold, 5.0),
+    "triangle": Experiment(
+        "a slow triangle to just beyond the dead zone: offset and play of the valve", telling.triangle, 32.0
+    ),
+    "blocked-triangle": Experiment("the same with the piston blocked: the valve alone", telling.blocked_triangle, 32.0),
+    "vent": Experiment("chambers vented, supply shut off: zero of the pressure sensors", telling.vent, 20.0),
 }
 
 

@@ -67,7 +67,7 @@ class Conductor:
         for index, trial in enumerate(self.programme.trials):
             self.index = index
             yield from self._settle()
-            if way := self._way_to_start(trial):
+            if not trial.anywhere and (way := self._way_to_start(trial)):
                 yield from self._go(*way)
                 yield from self._settle()
             yield from self._run(trial)

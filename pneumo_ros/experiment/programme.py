@@ -19,6 +19,7 @@ class Trial:
     seconds: float  # longest motion [s]
     patience: float = 0.0  # longest wait for motion [s], of a constant voltage
     travel: float = math.inf  # longest way [m], likewise
+    anywhere: bool = False  # begins where the piston is, for pistons that cannot move
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w[\w.-]*", self.name):
@@ -47,6 +48,7 @@ class Programme:
     return_left: float
     trials: tuple[Trial, ...]
     rest: float = 0.6  # at closed valve before each trial, recorded
+    prepare: str = ""  # what somebody has to do by hand before it
 
     def __post_init__(self) -> None:
         if not -self.end < self.low < self.high < self.end < math.inf:

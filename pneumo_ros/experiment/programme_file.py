@@ -12,7 +12,7 @@ from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.nearest import unknown_name
 
 _NUMBERS = {"low": "m", "high": "m", "end": "m", "return_right": "V", "return_left": "V", "rest": "s"}
-_TRIAL = ("name", "constant", "steps", "sweep", "seconds", "patience", "travel")
+_TRIAL = ("name", "constant", "steps", "sweep", "seconds", "patience", "travel", "anywhere")
 _HEAD = """\
 # Trials of '{experiment}', made for the machine '{machine}'. Run them with: pneumo experiment THIS_FILE
 # Positions in m from mid stroke, voltages in V, times in s. A trial ends at low and high; the end stop is at +-end.
@@ -24,6 +24,8 @@ def programme_text(programme: Programme) -> str:
     """The YAML file of a programme."""
     head = _HEAD.format(experiment=programme.experiment, machine=programme.machine)
     common = {"experiment": programme.experiment, "machine": programme.machine}
+    if programme.prepare:
+        common["prepare"] = programme.prepare
     numbers = {name: round(float(getattr(programme, name)), 6) for name in _NUMBERS}
     lines = ["trials:", *(f"  - {_flow(_trial_dict(trial))}" for trial in programme.trials)]
     return head + yaml.safe_dump({**common, **numbers}, sort_keys=False) + "\n".join(lines) + "\n"
@@ -33,6 +35,8 @@ def _trial_dict(trial: Trial) -> dict[str, Any]:
     entries: dict[str, Any] = {"name": trial.name, **voltages.as_dict(trial.voltage), "seconds": trial.seconds}
     if trial.direction:
         entries |= {"patience": trial.patience, "travel": round(trial.travel, 6)}
+    if trial.anywhere:
+        entries["anywhere"] = True
     return entries
 
 
@@ -57,20 +61,26 @@ def read_programme(path: str | Path) -> Programme:
 
 
 def _programme(document: object) -> Programme:
-    given = _section(document, "a programme", {"experiment", "machine", "trials", *_NUMBERS})
+    given = _section(document, "a programme", {"experiment", "machine", "prepare", "trials", *_NUMBERS})
     if not isinstance(given.get("trials"), list):
         raise UsageError("there is no list 'trials'")
-    numbers = {name: _number(given, name, unit) for name, unit in _NUMBERS.items() if name in given or name != "rest"}
+    numbers: dict[str, Any] = {
+        name: _number(given, name, unit) for name, unit in _NUMBERS.items() if name in given or name != "rest"
+    }
     trials = tuple(_trial(entry) for entry in given["trials"])
-    return Programme(str(given.get("experiment", "")), str(given.get("machine", "")), trials=trials, **numbers)
+    texts: dict[str, Any] = {name: str(given.get(name) or "") for name in ("experiment", "machine", "prepare")}
+    return Programme(trials=trials, **texts, **numbers)
 
 
 def _trial(entry: object) -> Trial:
     given = _section(entry, "a trial", _TRIAL)
     name = str(given.get("name", ""))
     numbers = {key: _number(given, key, unit) for key, unit in {"patience": "s", "travel": "m"}.items() if key in given}
+    anywhere = given.get("anywhere", False)
+    if not isinstance(anywhere, bool):
+        raise UsageError(f"trial '{name}': anywhere is {anywhere!r}; it takes true or false")
     try:
-        return Trial(name, voltages.from_dict(given), _number(given, "seconds", "s"), **numbers)
+        return Trial(name, voltages.from_dict(given), _number(given, "seconds", "s"), anywhere=anywhere, **numbers)
     except UsageError as error:
         raise UsageError(f"trial '{name}': {error}") from error
 

@@ -10,7 +10,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.stepper import Stepper
 
 SAMPLE = 4e-3  # s; what the conductor decides does not hang on milliseconds
-EVERY = 25  # samples between two points of the path that is kept
+EVERY = 0.1  # s between two points of the path that is kept
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,8 @@ class Rehearsal:
     """What a programme does to a model.
 
     outcomes: one per trial; duration [s] and way [m] in all; path: (time, position) every 0.1 s; commands: (time,
-    voltage) at each change; aborted: why it had to be stopped, empty if it went well.
+    voltage) at each change; recorded: (begin, end) of each trial; aborted: why it had to be stopped, empty if it went
+    well.
     """
 
     outcomes: tuple[Outcome, ...]
@@ -26,29 +27,38 @@ class Rehearsal:
     way: float
     path: tuple[tuple[float, float], ...]
     commands: tuple[tuple[float, float], ...]
+    recorded: tuple[tuple[float, float], ...]
     aborted: str
 
 
-def rehearse(programme: Programme, model: Model, position: float = 0.0) -> Rehearsal:
-    """Run `programme` on `model`, at rest at `position` [m]. Raises UsageError for a model without valve."""
+def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: float = SAMPLE) -> Rehearsal:
+    """Run `programme` on `model`, at rest at `position` [m], deciding every `sample` [s].
+
+    Raises UsageError for a model without valve.
+    """
     if model.force_driven:
         raise UsageError(
             f"{model.name} has no chambers, so no valve moves it; give --model a machine file with chambers"
         )
-    plant = Stepper(model, model.state(y=position), sample_time=SAMPLE)
+    plant = Stepper(model, model.state(y=position), sample_time=sample)
     conductor = Conductor(programme)
     path, commands, way = [(0.0, position)], [(0.0, 0.0)], 0.0
-    aborted = ""
+    recorded: list[tuple[float, float]] = []
+    last, aborted = None, ""
     try:
         while not conductor.done:
             before = float(plant.state[0])
             volts = conductor.step(plant.time, before)
+            if conductor.recording != last and conductor.recording is not None:
+                recorded.append((plant.time, plant.time))
+            if (last := conductor.recording) is not None:
+                recorded[-1] = (recorded[-1][0], plant.time + sample)
             if volts != commands[-1][1]:
                 commands.append((plant.time, volts))
             way += abs(float(plant.advance(volts)[0]) - before)
-            if plant.time - path[-1][0] >= EVERY * SAMPLE:
+            if plant.time - path[-1][0] >= EVERY:
                 path.append((plant.time, float(plant.state[0])))
     except AbortedError as error:
         aborted = str(error)
     commands.append((plant.time, 0.0))
-    return Rehearsal(tuple(conductor.outcomes), plant.time, way, tuple(path), tuple(commands), aborted)
+    return Rehearsal(tuple(conductor.outcomes), plant.time, way, tuple(path), tuple(commands), tuple(recorded), aborted)

@@ -1,5 +1,7 @@
 """The room that experiments leave a piston, and the voltages that move it through it."""
 
+from typing import TypedDict
+
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 
@@ -8,7 +10,17 @@ END = 0.005  # of the stroke, before either end: nobody gets there by coasting
 MODERATE = 0.3  # V beyond the dead zone
 
 
-def room_of(model: Model, margin: float = MARGIN) -> dict[str, float]:
+class Room(TypedDict):
+    """What every programme needs, by the names it has there: positions [m] and voltages [V]."""
+
+    low: float
+    high: float
+    end: float
+    return_right: float
+    return_left: float
+
+
+def room_of(model: Model, margin: float = MARGIN) -> Room:
     """low, high and end [m] of a programme for `model`, and return_right and return_left [V].
 
     `margin` is the part of the stroke that is kept free before either end. Raises UsageError for a model without valve.
