@@ -1,0 +1,156 @@
+"""How far a model's equations are from a record, in deviations of sensor noise.
+
+Nothing is predicted over long times: every equation is evaluated along the measured motion, and what is left over is
+divided by what noise does to it (generalised least squares; Aitken 1936), in short pieces with a free start each.
+
+    momentum     M (y_k+1 - 2 y_k + y_k-1) / h^2 - M a_model    while the piston slides, pieces of 0.1 s
+    chambers     p_k - p_0 - int p'_model, less its mean         pieces of 0.5 s
+    breakaways   M a_model with the bristle at its limit         at the sample before the piston slips
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.experiment.record import INTERVAL, Mask, Record
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+FAMILIES = ("momentum while sliding", "pressure in chamber a", "pressure in chamber b", "force at breakaway")
+RATE = 1000.0  # Hz, of the recordings whose noise is given
+BREAKAWAY = 0.7  # N: scatter of the force at which real pistons slip
+_RAMP = 0.02  # s until a slip shows: what the force rises in it adds to the scatter
+_STEP = 2e-3  # s, of the integration along the motion
+_PIECE, _HOLD = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
+_TINY = 1e-9  # m/s, velocity of a piston about to slip
+
+
+@dataclass(frozen=True)
+class Noise:
+    """White noise of each sample of a 1 kHz recording, standard deviations: position [m], pressures [Pa]."""
+
+    position: float = 10e-6
+    pressure: float = 300.0
+
+    @property
+    def scaled(self) -> tuple[float, float]:
+        """The same information, at the samples of a record."""
+        share = 1.0 / np.sqrt(RATE * INTERVAL)
+        return float(self.position * share), float(self.pressure * share)
+
+
+class Evidence:
+    """The whitened residuals of models along one record; all models are whitened alike, as `about` says."""
+
+    def __init__(self, record: Record, about: Model, noise: Noise) -> None:
+        self.record = record
+        self._mass = about["piston.mass"]
+        self._noise = noise.scaled
+        pieces = _pieces(record.sliding, _PIECE + 2)
+        self._slides = np.zeros((0, _PIECE + 2), dtype=np.int64) if record.part.blocked else pieces
+        self._holds = _pieces(record.recorded, _HOLD)
+        self._events = slice(0, 0) if record.part.blocked or "z" not in about.states else slice(None)
+        machine = record.part.machine(about)
+        self._whitener = self._whiten_sliding(machine)
+        self._scatter = self._scatter_of_breakaways(machine)
+
+    def residuals(self, model: Model) -> list[Array]:
+        """One array per family (`FAMILIES`), in noise deviations; what is not finite is huge."""
+        with np.errstate(all="ignore"):
+            found = self._residuals(self.record.part.machine(model))
+        return [np.clip(np.nan_to_num(part, nan=1e6), -1e6, 1e6) for part in found]
+
+    def _residuals(self, machine: Model) -> list[Array]:
+        frame, states, claimed = self._along(machine)
+        acceleration = 0.5 * (claimed[1:-1, 1] + claimed[2:, 1])
+        force = np.zeros(len(frame))
+        force[1:-1] = self._mass * (np.diff(frame[:, 0], 2) / INTERVAL**2 - acceleration)
+        found = [np.einsum("sij,sj->si", self._whitener, force[self._slides[:, 1:-1]]).ravel()]
+        for column in (2, 3):
+            left = np.cumsum(np.diff(frame[:, column], prepend=frame[0, column]) - INTERVAL * claimed[:, column])
+            pieces = left[self._holds]
+            found.append(((pieces - pieces.mean(axis=1, keepdims=True)) / self._noise[1]).ravel())
+        found.append(self._breakaways(machine, states) / self._scatter)
+        return found
+
+    def _along(self, model: Model) -> tuple[Array, Array, Array]:
+        """Frame as the model's sensors mean it, states and mean derivatives: (n, 4), (n, states), (n, states).
+
+        What a sensor adds or delays is taken from the signals to first order.
+        """
+        frame = self.record.frame
+        states, claimed = self._follow(model, frame)
+        if not _alters_signals(model):
+            return frame, states, claimed
+        seen = model.outputs(states, self.record.voltage)
+        wrong = [seen[f"{name}_measured"] - states[:, i] for name, i in (("y", 0), ("p_a", 2), ("p_b", 3))]
+        meant = frame.copy()
+        meant[:, (0, 2, 3)] -= np.stack(wrong, axis=1)
+        meant[:, 1] = np.gradient(meant[:, 0], INTERVAL)
+        return meant, *self._follow(model, meant)
+
+    def _follow(self, model: Model, frame: Array) -> tuple[Array, Array]:
+        rest = model.state()[frame.shape[1] :]
+        return model.follow(frame, self.record.voltage[:-1], rest, sample_time=INTERVAL, step=_STEP)
+
+    def _breakaways(self, model: Model, states: Array) -> Array:
+        """Net force [N] on the piston at each breakaway, were friction at its limit; 0 if the model is right."""
+        at, ways = self.record.breakaways[self._events], self.record.ways[self._events]
+        if not len(at):
+            return np.zeros(0)
+        held, time = self.record.voltage[at], self.record.time[at]
+        limit = states[at].copy()
+        v, z = model.states.index("v"), model.states.index("z")
+        limit[:, v] = _TINY * ways
+        beyond = 1e4 * model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
+        limit[:, z] = beyond * ways
+        slowed = limit[:, v] - model.derivatives(limit, held, time)[:, z]  # v sigma_0 |z| / g: what g is here and now
+        limit[:, z] *= limit[:, v] / slowed
+        return np.asarray(self._mass * model.derivatives(limit, held, time)[:, v])
+
+    def _whiten_sliding(self, model: Model) -> Array:
+        """Inverse roots (pieces, samples, samples) of the covariance that noise gives the force in each piece.
+
+        Noise of the position comes in by its second difference and, times the slope of friction over velocity, by its
+        first; noise of the pressures by the areas.
+        """
+        rows, width = _PIECE, _PIECE + 2
+        eye = [np.eye(rows, width, k) for k in range(3)]
+        second = self._mass * (eye[0] - 2.0 * eye[1] + eye[2]) / INTERVAL**2
+        first = (eye[2] - eye[0]) / (2.0 * INTERVAL)
+        slope = self._slope(model)[self._slides].mean(axis=1) if len(self._slides) else np.zeros(0)
+        by_position = self._noise[0] * (second + slope[:, None, None] * first)
+        by_pressure = self._noise[1] ** 2 * (model["piston.area_a"] ** 2 + model["piston.area_b"] ** 2)
+        covariance = by_position @ np.swapaxes(by_position, 1, 2) + by_pressure * np.eye(rows)
+        return np.linalg.inv(np.linalg.cholesky(covariance))
+
+    def _slope(self, model: Model) -> Array:
+        """How much force [N s/m] is lost per velocity along the record (n,)."""
+        states, _ = self._follow(model, self.record.frame)
+        faster = states.copy()
+        faster[:, 1] += 1e-3
+        held, time = self.record.voltage, self.record.time
+        change = model.derivatives(faster, held, time)[:, 1] - model.derivatives(states, held, time)[:, 1]
+        return np.asarray(-self._mass * change / 1e-3)
+
+    def _scatter_of_breakaways(self, model: Model) -> Array:
+        at = self.record.breakaways[self._events]
+        drive = model["piston.area_a"] * self.record.frame[:, 2] - model["piston.area_b"] * self.record.frame[:, 3]
+        before = np.maximum(at - round(_RAMP / INTERVAL), 0)
+        return np.hypot(BREAKAWAY, drive[at] - drive[before])
+
+
+def _alters_signals(model: Model) -> bool:
+    """Whether sensors of the model show anything but the states themselves."""
+    written = {name for effect in model.composition.effects for f in effect.functions.values() for name in f.writes}
+    return not written.isdisjoint(("y_measured", "p_a_measured", "p_b_measured"))
+
+
+def _pieces(wanted: Mask, length: int) -> NDArray[np.int64]:
+    """Indices (pieces, length) of whole pieces, side by side, in which every sample is wanted."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(np.int8)))
+    begins = [np.arange(a, b - length + 1, length) for a, b in edges.reshape(-1, 2)]
+    first = np.concatenate(begins) if begins else np.zeros(0, dtype=np.int64)
+    return np.asarray(first[:, None] + np.arange(length))
