@@ -2,8 +2,9 @@
 
 Without a name the experiments are listed. With one, the plant is taken through its trials inside the limits of its
 stroke, and each is recorded; --plan rehearses them with the model instead, --write makes a file of them, which can be
-changed and given in place of the name. The valve is closed, and the exit code is not 0, when the piston reaches an end
-stop or goes the wrong way, when the plant falls silent, and on Ctrl-C; what was recorded until then is kept.
+changed and given in place of the name. --separate says how well each experiment would tell two effects apart, and
+takes the best. The valve is closed, and the exit code is not 0, when the piston reaches an end stop or goes the wrong
+way, when the plant falls silent, and on Ctrl-C; what was recorded until then is kept.
 """
 
 import argparse
@@ -37,6 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="magnitudes for constant-voltage, each run both ways (default: eight beyond the machine's dead zone)",
     )  # fmt: skip
     parser.add_argument("--seconds", type=float, metavar="S", help="length of each trial, from when the piston moves")
+    parser.add_argument(
+        "--separate", nargs=2, metavar=("A", "B"),
+        help="instead of NAME: the experiment that best tells effect A from effect B",
+    )  # fmt: skip
+    parser.add_argument("--prepared", action="store_true", help="what an experiment needs done by hand has been done")
     parser.add_argument("--plan", action="store_true", help="show the trials as the model predicts them; move nothing")
     parser.add_argument("--write", metavar="FILE", help="write the programme (.yaml), or its voltages over time (.csv)")
     parser.add_argument("--out", metavar="FOLDER", help="folder for the recordings (default: experiment_1, 2, ...)")
@@ -52,24 +58,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """List, rehearse, write, or run."""
-    if options.name is None:
+    if options.name is None and not options.separate:
         return _list(console)
-    if options.write and Path(options.write).suffix not in FORMATS:
-        raise UsageError(f"--write {options.write}: it takes a name that ends in {', '.join(FORMATS)}")
-    if not (math.isfinite(options.timeout) and options.timeout > 0.0):
-        raise UsageError(f"--timeout is {options.timeout:g} ms; it takes a number above 0")
-    dry = options.plan or options.write
+    _check(options)
+    dry = bool(options.plan or options.write)
     if not dry:
         require_ros()
-    programme, rehearsal = _prepare(options)
+    programme, separated = _chosen(options, console, dry) if options.separate else (_named(options), {})
+    if programme is None:
+        console.json({"schema_version": 1, **separated})
+        return 1
+    rehearsal = _rehearsed(programme, options)
     if not dry:
-        return _live(options, console, programme, rehearsal)
+        return _live(options, console, programme, rehearsal, separated)
     console.say(plan_text(programme, rehearsal))
     if options.write:
         _write(options.write, programme, rehearsal)
         console.note(f"Programme written to {options.write}; {_use(options.write)}")
-    console.json(plan_dict(programme, rehearsal))
+    console.json({**plan_dict(programme, rehearsal), **separated})
     return 1 if rehearsal.aborted else 0
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Raises UsageError for options that make no sense, alone or together."""
+    if options.separate and (options.name or options.voltages or options.seconds is not None):
+        raise UsageError("--separate chooses the experiment itself; it goes without NAME, --voltages and --seconds")
+    if options.write and Path(options.write).suffix not in FORMATS:
+        raise UsageError(f"--write {options.write}: it takes a name that ends in {', '.join(FORMATS)}")
+    if options.write:
+        check_writable(options.write)
+    if not (math.isfinite(options.timeout) and options.timeout > 0.0):
+        raise UsageError(f"--timeout is {options.timeout:g} ms; it takes a number above 0")
 
 
 def _list(console: Console) -> int:
@@ -84,22 +103,43 @@ def _list(console: Console) -> int:
     return 0
 
 
-def _prepare(options: argparse.Namespace) -> "tuple[Programme, Rehearsal]":
-    """The programme, and what becomes of it on the model."""
+def _named(options: argparse.Namespace) -> "Programme":
+    """The programme that NAME stands for."""
     from pneumo_ros.experiment.catalogue import make_programme
     from pneumo_ros.experiment.programme_file import read_programme
+
+    if Path(options.name).suffix not in FORMATS[:2]:
+        return make_programme(options.name, chosen_model(options), options.voltages, options.seconds)
+    if options.voltages or options.seconds is not None:
+        raise UsageError(f"--voltages and --seconds are not for a programme file; change them in {options.name}")
+    return read_programme(options.name)
+
+
+def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[Programme | None, dict[str, Any]]":
+    """The programme that best tells the two effects apart, None if none does; and what all of them tell, as data."""
+    from pneumo_ros.command.separating import separation_dict, separation_text
+    from pneumo_ros.experiment.evidence import Noise
+    from pneumo_ros.experiment.separate import separate
+    from pneumo_ros.experiment.suggestion import best, suggestion
+
+    noise, (first, second) = Noise(), options.separate
+    with console.progress("Separating") as progress:
+        ranked = separate(chosen_model(options), first, second, noise=noise, progress=progress)
+    sentence = suggestion(ranked, first, second, options.model)
+    console.say(f"{separation_text(ranked, options.separate, noise)}\n\n{sentence}\n")
+    found, most = best(ranked, by_hand=dry or options.prepared), best(ranked)
+    if most is not None and found is not most:
+        console.note(f"{most.offer.name} takes a hand ({most.offer.prepare}) and --prepared; not done now")
+    return found.offer.programme if found else None, separation_dict(ranked, options.separate, noise, sentence)
+
+
+def _rehearsed(programme: "Programme", options: argparse.Namespace) -> "Rehearsal":
+    """What becomes of a programme on the model, once somebody has prepared it."""
+    from pneumo_ros.experiment.offers import conditions
     from pneumo_ros.experiment.rehearsal import rehearse
 
-    if options.write:
-        check_writable(options.write)
     model = chosen_model(options)
-    if Path(options.name).suffix in FORMATS[:2]:
-        if options.voltages or options.seconds is not None:
-            raise UsageError(f"--voltages and --seconds are not for a programme file; change them in {options.name}")
-        programme = read_programme(options.name)
-    else:
-        programme = make_programme(options.name, model, options.voltages, options.seconds)
-    return programme, rehearse(programme, model)
+    return rehearse(programme, conditions(programme, model).held(model))
 
 
 def _write(path: str, programme: "Programme", rehearsal: "Rehearsal") -> None:
@@ -128,6 +168,7 @@ def plan_text(programme: "Programme", rehearsal: "Rehearsal") -> str:
     drawing = chart(times, {"*": positions}, "m")
     room = f"Room: {programme.low:g} to {programme.high:g} m; the end stop counts from +-{programme.end:g} m."
     lines = [title, columns(rows, right=(1, 2, 3, 4)), "", drawing, "", room]
+    lines += [f"First {programme.prepare}."] if programme.prepare else []
     return "\n".join(lines + ([f"It would be aborted: {rehearsal.aborted}"] if rehearsal.aborted else []))
 
 
@@ -138,7 +179,7 @@ def plan_dict(programme: "Programme", rehearsal: "Rehearsal") -> dict[str, Any]:
     return {
         "schema_version": 1, "experiment": programme.experiment, "machine": programme.machine,
         "duration_s": rehearsal.duration, "travel_m": rehearsal.way, "aborted": rehearsal.aborted,
-        "trials": [trial_dict(one) for one in rehearsal.outcomes],
+        "prepare": programme.prepare, "trials": [trial_dict(one) for one in rehearsal.outcomes],
     }  # fmt: skip
 
 
@@ -146,8 +187,16 @@ def _minutes(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.1f} minutes"
 
 
-def _live(options: argparse.Namespace, console: Console, programme: "Programme", rehearsal: "Rehearsal") -> int:
+def _live(
+    options: argparse.Namespace,
+    console: Console,
+    programme: "Programme",
+    rehearsal: "Rehearsal",
+    separated: dict[str, Any],
+) -> int:
     """Run it on a plant."""
+    if programme.prepare and not options.prepared:
+        raise UsageError(f"{programme.experiment} takes a hand: first {programme.prepare}, then add --prepared")
     if rehearsal.aborted:
         console.note(f"Note: on the model this would be aborted: {rehearsal.aborted}")
     folder = Path(options.out) if options.out else _next_folder()
@@ -158,7 +207,7 @@ def _live(options: argparse.Namespace, console: Console, programme: "Programme",
     code, result = conduct(programme, settings, options.namespace.strip("/"), console)
     if code == 0:
         console.say(f"Done in {_minutes(time.monotonic() - began)}. Next: {_next(programme.experiment, folder)}")
-    console.json({**result, "folder": str(folder), "exit_code": code})
+    console.json({**result, **separated, "folder": str(folder), "exit_code": code})
     return code
 
 
