@@ -11,12 +11,14 @@ from pneumo_ros.identify.guess import guess_states, measured_columns
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.model import STEP
 from pneumo_ros.plant.sensing import sense
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 PROBE = 1e-2  # scales: step of finite differences
+_COARSE = 2.0 * STEP  # s
 _WRONG = 1e9  # noise deviations: the most an error counts, so that its square stays a number
 
 
@@ -25,10 +27,10 @@ class Segments:
     """Segments of equal length; arrays hold one row per segment.
 
     first: index of each segment's first entry in `voltage`, the inputs of all runs one after another; start [s]: when
-    voltage[0] would be by the clock of the segment's run; measured and
-    weight (segments, samples, signals), weight = 1 / noise, or 0 where nothing was measured; guess and scale
-    (segments, states): initial states and their prior deviations; shown (segments, signals): what sensors read at the
-    guess, so as the model then was; columns: the states that the signals show.
+    voltage[0] would be by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
+    1 / noise, or 0 where nothing was measured; guess and scale (segments, states): initial states and their prior
+    deviations; shown (segments, signals): what sensors read at the guess, so as the model then was; columns: the states
+    that the signals show.
     """
 
     sample_time: float
@@ -43,14 +45,27 @@ class Segments:
     shown: Array
     columns: tuple[int, ...]
     run: Index  # which run each segment is from
+    at: Index  # and the grid point there where it begins
+    runs: tuple[Run, ...]
+    parts: int = PARTS  # inputs held one after another in a sample
+    step: float = STEP  # s, longest of the integration
 
     def __len__(self) -> int:
         return len(self.first)
 
     def pick(self, chosen: Index) -> "Segments":
         """Some of the segments, by index."""
-        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "run")
+        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "run", "at")
         return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
+
+    def guessed(self, model: Model) -> "Segments":
+        """The same with guesses as `model` makes them."""
+        guess, scale = self.guess.copy(), self.scale.copy()
+        for number in np.unique(self.run):
+            rows = self.run == number
+            found = guess_states(model, self.runs[number], self.at[rows])
+            guess[rows], scale[rows] = found.states, found.scale
+        return replace(self, guess=guess, scale=scale, shown=self.read(model, guess)[0])
 
     def probes(self, states: Array) -> Array:
         """States (states * segments, states), each entry in turn moved by `PROBE` of its scale: lanes of a Jacobian."""
@@ -59,38 +74,57 @@ class Segments:
             moved[j, :, j] += PROBE * self.scale[:, j]
         return moved.reshape(-1, states.shape[1])
 
+    def coarser(self) -> "Segments":
+        """The same for integration in steps of 0.2 ms, with inputs held as long, where samples are that fine.
+
+        Half the work. Derivatives change by a hundredth, errors by a tenth of the noise and, at breakaways from a stiff
+        bristle, more: differences may be taken between results of either, never across.
+        """
+        if self.sample_time / self.parts > 0.5 * _COARSE * (1.0 + 1e-6) or self.parts % 2:
+            return replace(self, step=_COARSE)
+        pairs = self.voltage.reshape(-1, 2).mean(axis=1)
+        return replace(self, voltage=pairs, first=self.first // 2, parts=self.parts // 2, step=_COARSE)
+
     def from_guess(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
         """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states).
 
         For the measured ones it is the readings that are compared, which do not depend on what the sensors' effects
         were taken to be when the guess was made.
         """
-        apart = states.reshape(-1, *self.guess.shape) - self.guess
+        apart = states.reshape(self._copies(states), *self.guess.shape) - self.guess
         if not model.composition.true_sensors:
-            apart[..., self.columns] = self._read_at_start(model, states, parameters) - self.shown
+            apart[..., self.columns] = self.read(model, states, parameters) - self.shown
         return np.asarray(apart / self.scale)
 
-    def seated(self, model: Model) -> Array:
-        """The guesses (segments, states), with the measured states moved to where the sensors of `model` show them."""
-        states: Array = self.guess.copy()
-        for _ in range(0 if model.composition.true_sensors else 3):
-            states[:, self.columns] += self.shown - self._read_at_start(model, states)[0]
-        return states
+    def seated(self, model: Model, states: Array | None = None, shown: Array | None = None) -> Array:
+        """States (segments, states), measured ones moved to where sensors show `shown` (segments, signals).
 
-    def _read_at_start(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
-        copies = len(states) // max(len(self), 1)
+        Both are those of the guesses unless given.
+        """
+        moved: Array = (self.guess if states is None else states).copy()
+        for _ in range(0 if model.composition.true_sensors else 3):
+            moved[:, self.columns] += (self.shown if shown is None else shown) - self.read(model, moved)[0]
+        return moved
+
+    def read(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        """What sensors read at initial states (copies * segments, states): (copies, segments, signals)."""
+        copies = self._copies(states)
         read = sense(
             model, states[:, None], parameters, self.voltage, np.tile(self.first, copies),
-            sample_time=self.sample_time, start=np.tile(self.start - self.sample_time, copies), parts=PARTS,
+            sample_time=self.sample_time, start=np.tile(self.start - self.sample_time, copies), parts=self.parts,
         )  # fmt: skip
-        return read.reshape(-1, *self.shown.shape)
+        return read.reshape(copies, *self.shown.shape)
 
-    def simulate(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
-        """(lanes, samples, states) from initial states (lanes, states), lanes a multiple of the segments."""
-        copies = len(states) // len(self)
+    def simulate(
+        self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1,
+        columns: Sequence[int] | None = None,
+    ) -> Array:  # fmt: skip
+        """(lanes, samples, states or columns) from initial states (lanes, states), lanes a multiple of the segments."""
+        copies = self._copies(states)
         return model.simulate_lanes(
             self.voltage, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
-            sample_time=self.sample_time, start=np.tile(self.start, copies), parts=PARTS, threads=threads,
+            sample_time=self.sample_time, step=self.step, start=np.tile(self.start, copies), parts=self.parts,
+            threads=threads, columns=columns,
         )  # fmt: skip
 
     def residuals(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
@@ -98,13 +132,28 @@ class Segments:
 
         states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
         """
-        copies = len(states) // len(self)
-        predicted = sense(
+        shape = self._copies(states), len(self), self.samples, len(self.columns)
+        error = self._predict(model, states, parameters, threads).reshape(shape)
+        with np.errstate(over="ignore", invalid="ignore"):
+            error -= self.measured
+            error *= self.weight
+        if not np.abs(error).max(initial=0.0) < _WRONG:
+            error = np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
+        return error.reshape(*shape[:2], shape[2] * shape[3])
+
+    def _predict(self, model: Model, states: Array, parameters: Array | None, threads: int) -> Array:
+        """What sensors read along all lanes (lanes, samples, signals)."""
+        if model.composition.true_sensors:
+            return self.simulate(model, states, parameters, threads, self.columns)
+        copies = self._copies(states)
+        return sense(
             model, self.simulate(model, states, parameters, threads), parameters, self.voltage,
-            np.tile(self.first, copies), sample_time=self.sample_time, start=np.tile(self.start, copies), parts=PARTS,
-        ).reshape(copies, len(self), self.samples, -1)  # fmt: skip
-        error = ((predicted - self.measured) * self.weight).reshape(copies, len(self), -1)
-        return np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
+            np.tile(self.first, copies), sample_time=self.sample_time, start=np.tile(self.start, copies),
+            parts=self.parts,
+        )  # fmt: skip
+
+    def _copies(self, states: Array) -> int:
+        return len(states) // len(self) if len(self) else 1
 
 
 def cut(model: Model, runs: Sequence[Run], duration: float) -> Segments:
@@ -130,8 +179,8 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
         noise = run_noise(run)
         measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
         weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
-    guesses = [guess_states(model, run, begin) for run, begin in zip(runs, starts, strict=True)]
     counts = [len(begin) for begin in starts]
+    nothing = np.zeros((sum(counts), len(model.states)))
     segments = Segments(
         sample_time=dt,
         samples=samples,
@@ -140,13 +189,15 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
         start=np.repeat(-dt / PARTS * offsets[:-1], counts),
         measured=np.concatenate(measured),
         weight=np.concatenate(weight),
-        guess=np.concatenate([guess.states for guess in guesses]),
-        scale=np.concatenate([np.tile(guess.scale, (len(guess.states), 1)) for guess in guesses]),
+        guess=nothing,
+        scale=nothing,
         shown=np.zeros((sum(counts), len(names))),
         columns=tuple(names.values()),
         run=np.repeat(np.arange(len(runs)), counts),
+        at=np.concatenate(starts),
+        runs=tuple(runs),
     )
-    return replace(segments, shown=segments._read_at_start(model, segments.guess)[0])
+    return segments.guessed(model)
 
 
 def side_by_side(run: Run, samples: int) -> Index:

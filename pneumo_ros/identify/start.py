@@ -36,13 +36,16 @@ def start_states(model: Model, run: Run, at: Index) -> Array:
     return result
 
 
-def fit_starts(model: Model, segments: Segments) -> Array:
-    """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself."""
-    x = segments.seated(model)
+def fit_starts(model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS) -> Array:
+    """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself.
+
+    `begin` (segments, states) is where the search begins, by default the guesses.
+    """
+    x = segments.seated(model) if begin is None else begin.copy()
     damping = np.full(len(x), 1e-3)
     residual = _residuals(model, segments, x)[0]
     active = np.arange(len(x))
-    for _ in range(_ITERATIONS):
+    for _ in range(iterations):
         part, r = segments.pick(active), residual[active]
         candidate = x[active] + _move(model, part, x[active], r, damping[active])
         tried = _residuals(model, part, candidate)[0]

@@ -1,5 +1,6 @@
 """Packing of independent lanes into the blocks that the vectorised kernel advances together."""
 
+from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
 
@@ -18,13 +19,13 @@ def _blocks(rows: NDArray[Any], width: int) -> NDArray[Any]:
 
 def run_lanes(
     kernel: ModuleType, states: Array, parameters: Array, voltage: Array, first: NDArray[np.int64], start: Array,
-    h: float, stride: int, parts: int, samples: int, threads: int,
+    h: float, stride: int, parts: int, samples: int, threads: int, columns: Sequence[int] | None = None,
 ) -> Array:  # fmt: skip
-    """Run `kernel.run_lanes` over all lanes, on `threads` threads; returns (lanes, samples, states)."""
+    """Run `kernel.run_lanes` over all lanes, on `threads` threads; returns (lanes, samples, states or columns)."""
     width, count = kernel.LANES, len(states)
     n = states.shape[1]
     if not count:
-        return np.empty((0, samples, n))
+        return np.empty((0, samples, n if columns is None else len(columns)))
     x = np.ascontiguousarray(_blocks(states, width)).reshape(-1, n * width)
     q = np.ascontiguousarray(_blocks(parameters, width)).reshape(len(x), -1)
     f = np.ascontiguousarray(_blocks(first[:, None], width)[:, 0, :])
@@ -43,4 +44,6 @@ def run_lanes(
 
         with ThreadPoolExecutor(len(shares)) as pool:
             list(pool.map(part, shares))
-    return np.asarray(out.reshape(len(x), samples, n, width).transpose(0, 3, 1, 2).reshape(-1, samples, n)[:count])
+    kept = out.reshape(len(x), samples, n, width)
+    kept = kept if columns is None else kept[:, :, list(columns)]  # before lanes are put in order, which takes longest
+    return np.asarray(kept.transpose(0, 3, 1, 2).reshape(-1, samples, kept.shape[2])[:count])

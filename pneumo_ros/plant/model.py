@@ -1,7 +1,7 @@
 """A machine: effects and the values of their parameters, ready to be simulated. Models are immutable."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType, ModuleType
 
@@ -206,13 +206,15 @@ class Model:
         start: ArrayLike = 0.0,
         parts: int = 1,
         threads: int = 1,
+        columns: Sequence[int] | None = None,
     ) -> Array:
         """Integrate many lanes at once, several times faster each than `simulate`; returns (lanes, samples, states).
 
         voltage (n,) [V] is shared; lane i begins with voltage[first[i]] (default 0) and goes on as `simulate`.
         states (lanes, states), parameters (lanes, parameters) or None for the model's own, samples defaults to what
-        the voltage holds. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that
-        do not fit.
+        the voltage holds; `start` [s], one or (lanes,), is the time of voltage[0]; `columns`: the states to return,
+        default all. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that do
+        not fit.
         """
         x = np.array(states, dtype=float, ndmin=2)
         q = np.tile(self.values, (len(x), 1)) if parameters is None else np.array(parameters, dtype=float)
@@ -229,7 +231,7 @@ class Model:
             raise UsageError(f"lanes reach beyond the {len(held)} voltages given")
         stride, h = substeps(sample_time / parts, step)
         t0 = np.asarray(start, dtype=float) + begin * (sample_time / parts)
-        return run_lanes(self.kernel, x, q, held, begin, t0, h, stride, parts, count, threads)
+        return run_lanes(self.kernel, x, q, held, begin, t0, h, stride, parts, count, threads, columns)
 
     def follow(
         self,

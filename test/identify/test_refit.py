@@ -80,7 +80,7 @@ def test_products_are_not_taken_for_factors() -> None:
     _, _, found = whole()
     for name in ("dead_zone.right_slope", "dead_zone.left_slope", "arctan_flow.voltage_gain"):
         assert not found.estimates[name].determined
-        assert found.estimates[name].std < found.estimates[name].prior
+        assert found.estimates[name].std <= found.estimates[name].prior
 
 
 def test_what_is_fixed_stays() -> None:
