@@ -3,7 +3,7 @@
 One step of 100 us of the base machine: ours, and reference_axis.c (classical Runge-Kutta, gcc -O3 -march=native,
 compiled here). Both follow the same voltages; before timing, both are held to a run of 10 us steps. Repetitions
 alternate, the table shows medians of processor time. At rest the C loop skips exp and sin, ours does not. Then a batch
-of 64 machines on one core, and fresh processes.
+of 64 machines on one core, 75 parameter vectors with all effects along one measured motion, and fresh processes.
 
     python benchmarks/bench_kernel.py [--repetitions 21] [--starts 5]
 """
@@ -22,10 +22,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pneumo_ros.plant import Model, load_model
+from pneumo_ros.plant import Library, Model, load_model
 
 HERE = Path(__file__).parent
 SAMPLE, STRIDE, STEP, SETS = 1e-3, 10, 1e-4, 64
+VECTORS, SINGLES = 75, 16  # parameter vectors side by side, and those of them that also go one after another
 FLAGS = ["-O3", "-march=native", "-shared", "-fPIC"]
 
 
@@ -128,6 +129,32 @@ def batch(model: Model, loop: Callable[..., np.ndarray], repetitions: int) -> No
     )
 
 
+def following(axis: Model, repetitions: int) -> None:
+    """All effects driven along one motion of 2 s, by 75 parameter vectors: lanes against one after another."""
+    model = axis.with_effects([*axis.effects, *(name for name in Library().names() if name not in axis.effects)])
+    voltage, how = workloads()["steps, stops, reversals"][:4000], {"parts": 2, "step": 5e-4}
+    measured, rest = axis.simulate(voltage, start_of(axis), **how)[:, :4], model.state()[4:]
+    q = model.values * np.random.default_rng(4).uniform(0.98, 1.02, (VECTORS, len(model.parameters)))
+    lone, kernel = [dict(zip(model.parameters, row, strict=True)) for row in q[:SINGLES]], model.kernel
+    models = [Model(model.composition, values, model.name, model.library) for values in lone]
+    wanted = {"states": (), "columns": ("v", "p_a", "p_b"), **how}
+    lanes = model.follow_lanes(measured, voltage, rest, q, **wanted)[1]
+    for i, single in enumerate(models):
+        vars(single)["kernel"] = kernel  # loaded once
+        assert lanes[i].tobytes() == single.follow(measured, voltage, rest, **how)[1][:, 1:4].tobytes()
+    many, one, _ = alternate(
+        lambda: model.follow_lanes(measured, voltage, rest, q, **wanted),
+        lambda: [single.follow(measured, voltage, rest, **how) for single in models],
+        repetitions,
+    )
+    a_step = 1e9 / (len(voltage) - 2)
+    print(
+        f"{len(model.effects)} effects, {len(model.states)} states along a motion: follow_lanes "
+        f"{many / VECTORS * a_step:.0f} ns, follow {one / SINGLES * a_step:.0f} ns per step and vector; throughput "
+        f"lanes / single {one / SINGLES / (many / VECTORS):.2f}   (target: at least 3.00)"
+    )
+
+
 FIRST_STEP = """
 import time
 from pneumo_ros.plant import Stepper, load_model
@@ -177,6 +204,7 @@ def main() -> None:
         loop = compile_loop(folder)
         single(model, loop, options.repetitions)
         batch(model, loop, max(5, options.repetitions // 3))
+    following(model, max(5, options.repetitions // 3))
     starts(options.starts)
 
 

@@ -3,8 +3,9 @@
 from typing import TYPE_CHECKING
 
 from pneumo_ros.plant import maths
-from pneumo_ros.plant.entries import LANES, follow_text, lanes_text, pointwise_text, run_text, sense_text
+from pneumo_ros.plant.entries import LANES, lanes_text, pointwise_text, run_text, sense_text
 from pneumo_ros.plant.flow import FlowWriter
+from pneumo_ros.plant.following import follow_lanes_text, follow_text
 from pneumo_ros.plant.source import SourceBook
 from pneumo_ros.plant.stepping import step_text
 
@@ -40,7 +41,7 @@ def module_text(
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
     parts += [step_text(resolver, states, rates, names), run_text(states, names), lanes_text(states, names)]
-    parts += [follow_text(resolver, states, rates, names)]
+    parts += [follow_text(resolver, states, rates, names), follow_lanes_text(resolver, states, rates, names)]
     parts += [pointwise_text("rates", "derivatives", states, len(states), names)]
     parts += [pointwise_text("observe", "observation", states, len(observed), names)]
     if sensed:

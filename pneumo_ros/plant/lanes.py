@@ -1,11 +1,13 @@
-"""Packing of independent lanes into the blocks that the vectorised kernel advances together."""
+"""Independent lanes in the blocks that the vectorised kernel advances together, spread over threads."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from pneumo_ros.errors import UsageError
 
 Array = NDArray[np.float64]
 
@@ -15,6 +17,19 @@ def _blocks(rows: NDArray[Any], width: int) -> NDArray[Any]:
     lanes = np.arange(-(-len(rows) // width) * width)
     filled: NDArray[Any] = rows[np.minimum(lanes, len(rows) - 1)]
     return np.asarray(filled.reshape(-1, width, rows.shape[1]).transpose(0, 2, 1))
+
+
+def _share(part: Callable[[slice], None], count: int, threads: int) -> None:
+    """Call `part` with slices that cover `count` blocks of lanes, on `threads` threads."""
+    share = -(-count // max(threads, 1))
+    shares = [slice(i, i + share) for i in range(0, count, share)]
+    if len(shares) == 1:
+        part(shares[0])
+    else:
+        from concurrent.futures import ThreadPoolExecutor  # slow to import
+
+        with ThreadPoolExecutor(len(shares)) as pool:
+            list(pool.map(part, shares))
 
 
 def run_lanes(
@@ -35,15 +50,51 @@ def run_lanes(
     def part(which: slice) -> None:
         kernel.run_lanes(x[which], q[which], voltage, f[which], t[which], h, stride, parts, out[which])
 
-    share = -(-len(x) // max(threads, 1))
-    shares = [slice(i, i + share) for i in range(0, len(x), share)]
-    if len(shares) == 1:
-        part(shares[0])
-    else:
-        from concurrent.futures import ThreadPoolExecutor  # slow to import
-
-        with ThreadPoolExecutor(len(shares)) as pool:
-            list(pool.map(part, shares))
+    _share(part, len(x), threads)
     kept = out.reshape(len(x), samples, n, width)
     kept = kept if columns is None else kept[:, :, list(columns)]  # before lanes are put in order, which takes longest
     return np.asarray(kept.transpose(0, 3, 1, 2).reshape(-1, samples, kept.shape[2])[:count])
+
+
+def fitting(
+    measured: ArrayLike, rest: ArrayLike, parameters: ArrayLike, frame: int, others: int, width: int
+) -> tuple[Array, Array, Array]:
+    """What `follow_lanes` takes: measured (lanes or 1, samples, frame), rest (lanes, others), q (lanes, width).
+
+    What all lanes share may come without its first axis. Raises UsageError for shapes that do not fit.
+    """
+    # the kernel would compile anew for arrays that are read-only or not contiguous
+    given, tail, q = (np.require(a, float, ["C", "W"]) for a in (measured, rest, parameters))
+    lanes = q.shape[:1]
+    fits = given.ndim in (2, 3) and given.shape[:-2] in ((), lanes) and given.shape[-1] == frame
+    if not (fits and given.shape[-2] and q.shape == (*lanes, width) and tail.shape in ((others,), (*lanes, others))):
+        raise UsageError(
+            f"lanes do not fit: measured {given.shape}, rest {tail.shape}, parameters {q.shape}; needed are "
+            f"(samples, {frame}), ({others},), each with or without lanes before, and (lanes, {width})"
+        )
+    return given.reshape(-1, *given.shape[-2:]), np.array(np.broadcast_to(tail, (*lanes, others))), q
+
+
+def follow_lanes(
+    kernel: ModuleType, measured: Array, voltage: Array, rest: Array, parameters: Array,
+    kept: NDArray[np.int64], wanted: NDArray[np.int64], h: float, stride: int, parts: int, threads: int,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Run `kernel.follow_lanes` over all lanes, on `threads` threads; returns the kept states, wanted derivatives.
+
+    measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); kept, wanted: indices
+    of states. Both results are (lanes, samples, indices); row 0 of the derivatives repeats row 1.
+    """
+    count, samples, width = len(parameters), measured.shape[1], kernel.LANES
+    X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
+
+    def part(blocks: slice) -> None:
+        which = slice(blocks.start * width, blocks.stop * width)
+        given = measured if len(measured) == 1 else measured[which]
+        kernel.follow_lanes(
+            given, parameters[which], rest[which], voltage, 0.0, h, stride, parts, kept, X[which], wanted, out[which]
+        )
+
+    if count:
+        _share(part, -(-count // width), threads)
+    out[:, 0] = out[:, 1] if samples > 1 else 0.0
+    return X, out

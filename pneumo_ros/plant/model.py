@@ -13,7 +13,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.compose import Composition, compose
 from pneumo_ros.plant.effect import Effect, Parameter
 from pneumo_ros.plant.kernels import load_kernel
-from pneumo_ros.plant.lanes import run_lanes
+from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import FRAME, Library
 
 Array = NDArray[np.float64]
@@ -113,7 +113,7 @@ class Model:
 
     @cached_property
     def kernel(self) -> ModuleType:
-        """The compiled module: `run`, `run_lanes`, `rates`, `observe` (see `emit`)."""
+        """The compiled module: `run`, `run_lanes`, `follow`, `follow_lanes`, `rates`, `observe` (see `emit`)."""
         return load_kernel(self.composition.text)
 
     @property
@@ -264,6 +264,43 @@ class Model:
         self.kernel.follow(X, self.values, held, 0.0, h, stride, parts, out)
         out[0] = out[1] if len(out) > 1 else 0.0
         return X, out
+
+    def follow_lanes(
+        self,
+        measured: ArrayLike,
+        voltage: ArrayLike,
+        rest: ArrayLike,
+        parameters: ArrayLike,
+        *,
+        sample_time: float = 1e-3,
+        step: float = STEP,
+        parts: int = 1,
+        threads: int = 1,
+        states: Iterable[str] | None = None,
+        columns: Iterable[str] | None = None,
+    ) -> tuple[Array, Array]:
+        """Follow one measured motion with many lanes of parameters, several times faster each than `follow`.
+
+        measured (samples, m) shared by all lanes or (lanes, samples, m); voltage shared; rest (others,) or (lanes,
+        others); parameters (lanes, parameters). Returns what `follow` returns for each lane, to the bit: states (lanes,
+        samples, len(states)) and derivatives (lanes, samples, len(columns)) of the states named, in that order; None
+        means all of them. Raises UsageError for shapes that do not fit and unknown names.
+        """
+        frame = 2 if self.force_driven else 4
+        given, tail, q = fitting(measured, rest, parameters, frame, len(self.states) - frame, len(self.parameters))
+        held = np.array(voltage, dtype=float, ndmin=1)
+        if _whole(len(held), parts) < given.shape[1] - 1:
+            raise UsageError(f"{len(held)} voltages do not reach over {given.shape[1]} samples")
+        stride, h = substeps(sample_time / parts, step)
+        kept, wanted = self._indices(states), self._indices(columns)
+        return follow_lanes(self.kernel, given, held, tail, q, kept, wanted, h, stride, parts, threads)
+
+    def _indices(self, names: Iterable[str] | None) -> NDArray[np.int64]:
+        chosen = self.states if names is None else tuple(names)
+        for name in chosen:
+            if name not in self.states:
+                raise UsageError(unknown_name("state", name, self.states))
+        return np.array([self.states.index(name) for name in chosen], dtype=np.int64)
 
     def outputs(
         self, states: ArrayLike, voltage: ArrayLike | None = None, start: float = 0.0, sample_time: float = 1e-3

@@ -48,23 +48,47 @@ def test_effects_may_be_listed_in_any_order() -> None:
         assert x[:, one.states.index(name)] == pytest.approx(z[:, other.states.index(name)], rel=1e-9, abs=1e-15)
 
 
-def test_lanes_of_all_effects_equal_single_runs_to_the_bit() -> None:
-    """Each lane with parameters of its own, drawn over half of their ranges about the defaults."""
-    model, random, states = everything(), np.random.default_rng(5), starts(20)
+def mild_variants(count: int) -> list[Model]:
+    """The axis with every effect, parameters drawn and then brought close to their defaults."""
+    model, random = everything(), np.random.default_rng(5)
     lanes = []
-    for _ in states:
+    for _ in range(count):
         drawn = {k: v for e in CATALOGUE if e.name not in AXIS.effects for k, v in own_values(e, random).items()}
-        mild = {key: model[key] + 0.02 * (value - model[key]) for key, value in drawn.items()}
-        lanes.append(model.with_parameters(mild))
+        lanes.append(model.with_parameters({key: model[key] + 0.02 * (v - model[key]) for key, v in drawn.items()}))
+    return lanes
+
+
+def test_lanes_of_all_effects_equal_single_runs_to_the_bit() -> None:
+    """Each lane with parameters of its own."""
+    model, states, lanes = everything(), starts(20), mild_variants(20)
     out = model.simulate_lanes(VOLTAGE, states, np.array([lane.values for lane in lanes]))
     for lane, state, run in zip(lanes, states, out, strict=True):
         assert run.tobytes() == lane.simulate(VOLTAGE, state).tobytes()
 
 
-def test_nothing_in_a_kernel_calls_out_and_lanes_are_vectors() -> None:
+def test_lanes_of_all_effects_follow_a_motion_as_each_would_alone() -> None:
+    """To the bit, a measured motion that these effects do not make by themselves."""
+    model, lanes = everything(), mild_variants(20)
+    measured = AXIS.simulate(VOLTAGE, AXIS.state(y=-0.5, p_a=3e5, p_b=4e5), parts=2)[:, :4]
+    rest, q = starts(1)[0, 4:], np.array([lane.values for lane in lanes])
+    states, slopes = model.follow_lanes(measured, VOLTAGE, rest, q, step=5e-4, parts=2)
+    assert np.ptp(slopes[:, 100, 1:4], axis=0).all(), "lanes differ in acceleration and in both chambers"
+    for i, lane in enumerate(lanes):
+        alone = lane.follow(measured, VOLTAGE, rest, step=5e-4, parts=2)
+        assert (states[i].tobytes(), slopes[i].tobytes()) == (alone[0].tobytes(), alone[1].tobytes())
+    plain = in_python(model).follow_lanes(measured[:4], VOLTAGE[:6], rest, q[:2], step=5e-4, parts=2)
+    assert (plain[0].tobytes(), plain[1].tobytes()) == (states[:2, :4].tobytes(), slopes[:2, :4].tobytes())
+
+
+@pytest.mark.parametrize("entry", ["run_lanes", "follow_lanes"])
+def test_nothing_in_a_kernel_calls_out_and_lanes_are_vectors(entry: str) -> None:
     """No elementary function of a library, which would keep lanes from advancing side by side."""
-    everything().simulate_lanes(VOLTAGE[:1], starts(1))
-    lanes = everything().kernel.run_lanes
+    model = everything()
+    if entry == "run_lanes":
+        model.simulate_lanes(VOLTAGE[:1], starts(1))
+    else:
+        model.follow_lanes(starts(2)[:, :4], VOLTAGE[:1], starts(1)[:, 4:], model.values[None])
+    lanes = getattr(model.kernel, entry)
     lanes.recompile()  # what comes from the cache does not tell what it is made of
     text = "\n".join(lanes.inspect_llvm().values())
     called = set(re.findall(r"call [^@\n]*@\"?([\w.]+)", text))

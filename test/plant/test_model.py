@@ -171,7 +171,7 @@ def test_following_does_not_let_the_measured_motion_run_on(axis: Model) -> None:
 
 
 @pytest.mark.parametrize(
-    "method", ["simulate", "simulate_lanes", "follow", "with_parameters", "outputs", "derivatives"]
+    "method", ["simulate", "simulate_lanes", "follow", "follow_lanes", "with_parameters", "outputs", "derivatives"]
 )
 def test_no_misspelt_keyword_is_swallowed(axis: Model, method: str) -> None:
     with pytest.raises(TypeError, match="sampletime"):
