@@ -42,6 +42,11 @@ class Bump:
         """Weighted sums (windows,) of a signal (n,) over windows a quarter of their width apart; none if n < width."""
         return self._windows(signal) @ weights
 
+    def centres(self, samples: int) -> NDArray[np.int64]:
+        """Sample at the middle of each window of a signal of that many samples."""
+        first = np.arange(max(samples - self.width + 1, 0), step=max(self.width // 4, 1))
+        return np.asarray(first + self.width // 2, dtype=np.int64)
+
     def _windows(self, signal: Array) -> Array:
         if len(signal) < self.width:
             return np.empty((0, self.width))

@@ -1,0 +1,1 @@
+"""Which physical effect a model lacks: ranked, confirmed on recordings that were never fitted, and added."""

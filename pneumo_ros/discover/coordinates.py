@@ -1,0 +1,97 @@
+"""Coordinates in which candidates are fitted: sizes in typical ones, time constants and frequencies as logarithms."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant.effect import Effect
+
+Array = NDArray[np.float64]
+
+_FACTOR = 4.0  # between the shapes that are tried first
+_RANGE = 0.1  # of the allowed range: usual where nothing else tells
+_WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One parameter of a candidate.
+
+    Its value is neutral + typical u, or typical exp(u) where it is a shape or fades out towards its upper bound.
+    """
+
+    name: str
+    typical: float
+    neutral: float | None
+    low: float
+    high: float
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether u is a logarithm."""
+        return self.typical > 0.0 and (self.neutral is None or self.neutral == self.high)
+
+    @property
+    def is_size(self) -> bool:
+        """Whether the parameter fades the effect in, rather than shaping it."""
+        return self.neutral is not None
+
+    @property
+    def prior(self) -> float:
+        """Standard deviation of u before anything was measured."""
+        return _NARROW if self.logarithmic else _WIDE
+
+    def value(self, u: float) -> float:
+        """The parameter's value, within its bounds."""
+        if self.logarithmic:
+            value = self.typical * float(np.exp(np.clip(u, -50.0, 50.0)))
+        else:
+            value = (self.neutral or 0.0) + self.scale * u
+        return float(min(max(value, self.low), self.high))
+
+    @property
+    def scale(self) -> float:
+        """Value per u of a linear coordinate."""
+        return self.typical - (self.neutral or 0.0) if self.typical != (self.neutral or 0.0) else 1.0
+
+    def u(self, value: float) -> float:
+        """The coordinate of a value."""
+        if self.logarithmic:
+            return float(np.log(max(value, 1e-300) / self.typical))
+        return (value - (self.neutral or 0.0)) / self.scale
+
+    def clip(self, u: float) -> float:
+        """The nearest u whose value is allowed."""
+        return self.u(self.value(u))
+
+
+def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
+    """Coordinates of all parameters of an effect; () when none of them fades it in."""
+    if all(p.neutral is None for p in effect.parameters.values()):
+        return ()
+    return tuple(_coordinate(effect, key) for key in effect.parameters)
+
+
+def _coordinate(effect: type[Effect], key: str) -> Coordinate:
+    p = effect.parameters[key]
+    typical = p.default
+    if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: how much is usual?
+        like = [abs(o.default - o.neutral) for o in effect.parameters.values() if o.neutral is not None and o.unit == p.unit]
+        span = _RANGE * (p.high - p.low) if np.isfinite(p.high - p.low) else 1.0
+        typical = p.neutral + (max(like, default=0.0) or span)
+    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high)
+
+
+def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
+    """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,)."""
+    usual = np.array([0.0 if c.logarithmic or not c.is_size else 1.0 for c in effect])
+    found = [usual]
+    for k, c in enumerate(effect):
+        if not c.is_size and c.logarithmic:
+            for factor in (_FACTOR, 1.0 / _FACTOR):
+                u = usual.copy()
+                u[k] = c.clip(np.log(factor))
+                if abs(u[k]) > 0.5:
+                    found.append(u)
+    return found

@@ -1,0 +1,171 @@
+"""`diagnose`: the search, judged on held-out runs, as one outcome."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.compare import Comparison, compare
+from pneumo_ros.discover.basefit import base_fit
+from pneumo_ros.discover.hypothesis import cluster_robust, family_scales, weights
+from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
+from pneumo_ros.discover.search import Found, Progress, Search, Step
+from pneumo_ros.discover.trial import Trial
+from pneumo_ros.errors import UsageError
+from pneumo_ros.identify.run import Run
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+HORIZON = 1.0  # s
+SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
+MATERIAL_FORCE = 0.01  # of the driving force: less is texture that no model has
+
+
+def diagnose(
+    model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None
+) -> Outcome:
+    """Which effects `model` lacks: refit, rank on `train`, confirm on `held`, add, repeat.
+
+    Both are sequences of runs of one machine, `held` is never fitted. Raises UsageError when either is empty,
+    DataError when a run does not fit the model.
+    """
+    if not train or not held:
+        raise UsageError("a diagnosis needs recordings to fit and others to judge by; give both, the latter by --holdout")
+    tell = progress or (lambda share, text: None)
+    search = Search(model, train, held, lambda share, text: tell(0.8 * share, text))
+    return conclude(search, search.run(), tell)
+
+
+def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
+    """Judge what a search found by one-second windows of the held-out runs."""
+    held = search.held.runs
+    models = [search.start, found.base, *(step.model for step in found.steps[1:])]
+    if models[-1] is not found.model:
+        models.append(found.model)
+    course, comparisons = [], []
+    for k, model in enumerate(models):
+        tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
+        comparisons.append(compare(model, held, HORIZON))
+        course.append((_label(models, k), window_error(comparisons[-1])))
+    values = deviations(search, found.model)
+    added = tuple(
+        _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
+        for k, step in enumerate(s for s in found.steps if s.added)
+    )
+    before, after = comparisons[1], comparisons[-1]
+    unexplained = remains(after)
+    return Outcome(
+        verdict=verdict(added, unexplained),
+        failing=failing(before, added, found.base),
+        base=found.base,
+        model=found.model,
+        added=added,
+        ranking=tuple(_ranked(trial) for trial in _latest(found.steps)),
+        steps=found.steps,
+        before=before,
+        after=after,
+        errors={
+            "before": signal_errors(before), "after": signal_errors(after), "noise": noise_levels(after),
+        },
+        course=tuple(course),
+        unexplained=unexplained,
+        interrupted=found.interrupted,
+        train=tuple(run.name for run in search.train.runs),
+        held=tuple(run.name for run in held),
+    )  # fmt: skip
+
+
+def _label(models: Sequence[Model], k: int) -> str:
+    if k < 2:
+        return ("as given", "refitted")[k]
+    return "+ " + ", ".join(e for e in models[k].effects if e not in models[k - 1].effects)
+
+
+def window_error(comparison: Comparison) -> float:
+    """Root mean square over signals and runs of window error over noise: 1 where only noise is left."""
+    ratios = [error.ratio for run in comparison.runs for error in run.error.values()]
+    return float(np.sqrt(np.mean(np.square(ratios))))
+
+
+def signal_errors(comparison: Comparison) -> dict[str, float]:
+    """Rms window error by signal over all runs, in its unit."""
+    names = comparison.runs[0].error
+    return {n: float(np.sqrt(np.mean([run.error[n].rms ** 2 for run in comparison.runs]))) for n in names}
+
+
+def noise_levels(comparison: Comparison) -> dict[str, float]:
+    """Noise by signal, in its unit."""
+    names = comparison.runs[0].error
+    return {n: float(np.sqrt(np.mean([run.error[n].noise ** 2 for run in comparison.runs]))) for n in names}
+
+
+def deviations(search: Search, model: Model) -> dict[str, float]:
+    """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
+    names, prior, centre = search.priors(model)
+    base = base_fit(search.train, model, names, centre, prior)
+    w = weights(search.train, base.residual, family_scales(search.train, base.residual))
+    A = base.slopes * w[:, None]
+    normal = A.T @ A
+    bread = np.linalg.inv(normal + np.eye(len(names)))
+    cov = cluster_robust(A, w * base.residual, search.train.block, bread)
+    robust, plain = np.sqrt(np.diag(cov)), np.sqrt(np.diag(bread))
+    std = np.maximum(robust, plain) * prior
+    return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in zip(names, std, prior, strict=True)}
+
+
+def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:
+    assert step.added is not None
+    name = step.added.name
+    values = {}
+    for key, parameter in model.library.find(name).parameters.items():
+        dotted = f"{name}.{key}"
+        values[key] = Value(model[dotted], std.get(dotted, float("inf")), parameter.unit)
+    return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
+
+
+def _latest(steps: Sequence[Step]) -> list[Trial]:
+    """Each candidate's trial in the last round it was tried in; what was added comes first."""
+    added = [step.added for step in steps if step.added]
+    seen = {trial.name: trial for step in steps for trial in step.trials}
+    names = [trial.name for trial in added]
+    return [*added, *sorted((t for n, t in seen.items() if n not in names), key=lambda trial: -trial.hypothesis.t)]
+
+
+def _ranked(trial: Trial) -> Ranked:
+    equation = max(trial.gain, key=lambda name: trial.gain[name])
+    return Ranked(trial.name, trial.hypothesis.t, trial.gain[equation], equation, trial.size, trial.objections, None)
+
+
+def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
+    """What fails in the refitted base: its equations, and the valve or the sensors where an added effect is theirs."""
+    found = [n for n, e in before.equations.items() if e.explained_by_noise is False and e.ratio_to_noise > SIGNIFICANT]
+    for addition in added:
+        module = model.library.find(addition.effect).__module__
+        for part in ("valve", "sensor"):
+            if f".{part}." in module and part not in found:
+                found.append(part)
+    return tuple(found)
+
+
+def remains(after: Comparison) -> Unexplained | None:
+    """The equation that fails worst, over the variable that explains it best; None where nothing of size remains."""
+    worst, ratio = None, SIGNIFICANT
+    for name, equation in after.equations.items():
+        if equation.explained_by_noise is False and equation.ratio_to_noise > ratio:
+            worst, ratio = name, equation.ratio_to_noise
+    if worst is None or not after.dependences.get(worst):
+        return None
+    against, best = max(after.dependences[worst].items(), key=lambda item: item[1].explained_share)
+    bins, equation = best.bins, after.equations[worst]
+    return Unexplained(
+        worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,
+        equation.residual_rms, best.explained_share,
+    )  # fmt: skip
+
+
+def verdict(added: Sequence[Addition], unexplained: Unexplained | None) -> str:
+    """The one word for it."""
+    if unexplained is not None and not added:
+        return UNKNOWN
+    return FOUND if added else ADEQUATE

@@ -1,0 +1,202 @@
+"""Candidates fitted to the evidence, all at once, and ranked by what they leave."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.coordinates import Coordinate, starts
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import (
+    PROBE, BaseFit, Hypothesis, cluster_robust, family_scales, log_likelihood, missing, solve, vectors, weights,
+)  # fmt: skip
+
+Array = NDArray[np.float64]
+
+SHORTLIST = 6
+FEW = 3  # sizes: of effects with more, only the linear fit is tried
+
+
+def screen(base: BaseFit) -> list[Hypothesis]:
+    """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first."""
+    found = missing(base.model)
+    tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
+    variants, spans = [{}], []
+    for name, effect, u in tasks:
+        shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
+        sizes = [k for k, c in enumerate(effect) if c.is_size]
+        own = []
+        for k in sizes:
+            values = {c.name: c.neutral for c in effect if c.is_size and c.neutral is not None}
+            own.append(values | shape | {effect[k].name: effect[k].value(u[k])})
+        spans.append((len(variants), len(own), sizes))
+        variants += own
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+    result: list[Hypothesis] = []
+    for (name, effect, u), (first, count, sizes) in zip(tasks, spans, strict=True):
+        change = (residual[first : first + count] - residual[0]).T
+        result.append(_linear(base, name, effect, u, sizes, change))
+    return sorted(result, key=lambda h: -h.likelihood)
+
+
+def _linear(base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, sizes: list[int], C: Array) -> Hypothesis:
+    """Linear fit of the sizes of one candidate beside the base parameters."""
+    K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
+    ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
+    offset = np.concatenate([base.offset, np.zeros(len(sizes))])
+    after, x = base.residual, np.zeros(K.shape[1])
+    for _ in range(5):
+        scale = family_scales(base.evidence, after)
+        x, A, bread = solve(K, base.residual, weights(base.evidence, after, scale), ridge, offset)
+        after = base.residual + K @ x
+    w = weights(base.evidence, after, scale)
+    cov = cluster_robust(A, w * after, base.evidence.block, bread)[p:, p:]
+    start = u.copy()
+    for k, size in zip(sizes, x[p:], strict=True):
+        c = effect[k]
+        start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
+    return Hypothesis(name, effect, start, x[:p], after, log_likelihood(base.evidence, after), wald(x[p:], cov), cov)
+
+
+def wald(size: Array, covariance: Array) -> float:
+    """Student-like statistic of several sizes together: sqrt(chi2 - (n - 1)), |t| for one."""
+    if not len(size):
+        return 0.0
+    jitter = 1e-9 * np.trace(covariance) / len(size) + 1e-300
+    value = float(size @ np.linalg.solve(covariance + jitter * np.eye(len(size)), size))
+    return float(np.sqrt(max(value - (len(size) - 1), 0.0)))
+
+
+def refine(base: BaseFit, hypotheses: Sequence[Hypothesis], iterations: int = 5) -> list[Hypothesis]:
+    """Gauss-Newton of all coordinates of some candidates at once, each with its own step control."""
+    best = [replace(h, likelihood=-np.inf) for h in hypotheses]
+    trial = _best_sizes(base, hypotheses)
+    moving = list(range(len(best)))
+    for k in range(iterations):
+        variants: list[dict[str, float]] = []
+        spans = {}
+        for i in moving:
+            spans[i] = len(variants)
+            variants += [_values(best[i], trial[i]), *(_values(best[i], v) for v in _probes(best[i], trial[i]))]
+        if not moving:
+            break
+        residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+        for i in tuple(moving):
+            h, u, at = best[i], trial[i], spans[i]
+            moved = np.array([v[j] - u[j] for j, v in enumerate(_probes(h, u))])
+            C = ((residual[at + 1 : at + 1 + len(u)] - residual[at]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T
+            tried = _judge(base, h, u, residual[at], C)
+            if tried.likelihood > h.likelihood:
+                best[i], trial[i] = tried, _next(base, tried, C, residual[at])
+            else:
+                trial[i] = 0.5 * (u + h.u)
+            settled = 0.0 < tried.likelihood - h.likelihood < 0.3
+            if settled or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
+                moving.remove(i)
+    return best
+
+
+def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
+    """For each hypothesis the best of a few sizes: what is linear near neutral need not be so where it leads."""
+    options: list[list[Array]] = []
+    for h in hypotheses:
+        size = np.array([c.is_size for c in h.coordinates])
+        linear = np.array([c.is_size and not c.logarithmic for c in h.coordinates])
+        fading = size & ~linear
+        own = [h.u]
+        if size.sum() <= FEW:
+            own += [np.where(linear, share * h.u, h.u) for share in (0.4, 0.1)]
+            own += [np.where(linear, share * np.where(h.u < 0.0, -1.0, 1.0), h.u) for share in (1.0, 0.3)]
+            own += [np.where(fading, h.u + shift, h.u) for shift in (-0.7, 0.7, 1.4) if fading.any()]
+        options.append([np.array([c.clip(x) for c, x in zip(h.coordinates, u, strict=True)]) for u in own])
+    variants = [_values(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+    found, at = [], 0
+    for own in options:
+        likelihood = [_at_best(base, r)[2] for r in residual[at : at + len(own)]]
+        found.append(own[int(np.argmax(likelihood))])
+        at += len(own)
+    return found
+
+
+def _at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
+    """Base parameters' best shift beside a candidate's residual, what they leave, and its log likelihood."""
+    after, shift = here, np.zeros(len(base.names))
+    for _ in range(4):
+        scale = family_scales(base.evidence, after)
+        weight = weights(base.evidence, after, scale)
+        shift, _A, _bread = solve(base.slopes, here, weight, np.ones(len(base.names)), base.offset)
+        after = here + base.slopes @ shift
+    value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((shift + base.offset) ** 2))
+    return shift, after, value
+
+
+def _values(h: Hypothesis, u: Array) -> dict[str, float]:
+    return {c.name: c.value(x) for c, x in zip(h.coordinates, u, strict=True)}
+
+
+def _probes(h: Hypothesis, u: Array) -> list[Array]:
+    """u with each coordinate in turn moved by a little, away from a bound."""
+    found = []
+    for j, c in enumerate(h.coordinates):
+        v = u.copy()
+        v[j] = c.clip(u[j] + PROBE)
+        if abs(v[j] - u[j]) < 0.5 * PROBE:
+            v[j] = c.clip(u[j] - PROBE)
+        found.append(v)
+    return found
+
+
+def _system(base: BaseFit, h: Hypothesis, u: Array, C: Array) -> tuple[Array, Array, Array]:
+    """Slopes, ridge and offset of base parameters and candidate together, about base values and u."""
+    p, priors = len(base.names), np.array([c.prior for c in h.coordinates])
+    ridge = np.concatenate([np.ones(p), 1.0 / priors**2])
+    return np.concatenate([base.slopes, C], axis=1), ridge, np.concatenate([base.offset, u])
+
+
+def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hypothesis:
+    """The hypothesis at u, base parameters at their best there."""
+    p = len(base.names)
+    shift, after, value = _at_best(base, here)
+    value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
+    K, ridge, offset = _system(base, h, u, C)
+    w = weights(base.evidence, after, family_scales(base.evidence, after))
+    A = K * w[:, None]
+    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    cov = cluster_robust(A, w * after, base.evidence.block, bread)[p:, p:]
+    sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
+    distance = np.array([_distance(h.coordinates[j], u[j]) for j in sizes])
+    t = wald(distance, cov[np.ix_(sizes, sizes)])
+    return replace(h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C)
+
+
+def _distance(c: Coordinate, u: float) -> float:
+    """How far from neutral, in u: of a fading one, in the logarithm's own terms about its value."""
+    if c.logarithmic:
+        assert c.neutral is not None
+        return 1.0 - c.value(u) / c.neutral  # d(1/value) relative: what fades is 1 / value
+    return u
+
+
+def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
+    K, ridge, offset = _system(base, h, h.u, C)
+    after = h.residual
+    x = np.zeros(K.shape[1])
+    for _ in range(3):
+        scale = family_scales(base.evidence, after)
+        x, _A, _bread = solve(K, here, weights(base.evidence, after, scale), ridge, offset)
+        after = here + K @ x
+    step = np.clip(x[len(base.names) :], -3.0, 3.0)
+    logs = np.array([c.logarithmic for c in h.coordinates])
+    step = np.where(logs, np.clip(step, -1.0, 1.0), step)
+    return np.array([c.clip(v) for c, v in zip(h.coordinates, h.u + step, strict=True)])
+
+
+def held_out(base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
+    """Residuals of hypotheses on runs that took no part in their fit: parameters as they were found."""
+    if not hypotheses:
+        return []
+    model, evidence = base.everything, held.evidence
+    residual = evidence.residuals(model, vectors(model, [h.values for h in hypotheses]))
+    return [r + held.slopes @ h.shift for r, h in zip(residual, hypotheses, strict=True)]

@@ -1,0 +1,155 @@
+"""The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.basefit import base_fit, fit_base
+from pneumo_ros.discover.coordinates import coordinates
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, huber, log_likelihood
+from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen
+from pneumo_ros.discover.trial import Trial, put_on_trial, rivals
+from pneumo_ros.identify.refit import default_free
+from pneumo_ros.identify.run import Run
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+SCREENED = 50.0  # s of recordings by which candidates are ranked first
+MOST = 4  # effects added
+UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
+
+
+@dataclass(frozen=True)
+class Step:
+    """One round: the model it began with, all trials best first, and what was added (None in the last round)."""
+
+    model: Model
+    trials: tuple[Trial, ...]
+    added: Trial | None
+    rivals: tuple[Trial, ...]
+    before: dict[str, float]  # scale over noise by family on held-out runs
+    after: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Found:
+    """The outcome: refitted base, final model, the rounds that led there."""
+
+    base: Model
+    model: Model
+    steps: tuple[Step, ...]
+    interrupted: bool = False
+
+
+class Search:
+    """Everything that stays the same during one search."""
+
+    def __init__(self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None) -> None:
+        self.progress = progress or (lambda share, text: None)
+        self.start = model
+        self.train, self.held = Evidence(model, train), Evidence(model, held)
+
+    def run(self) -> Found:
+        """Add effects one after another while they pass every test."""
+        self.progress(0.05, "refitting what the model has")
+        base = self.refit(self.start)
+        model, steps = base, list[Step]()
+        try:
+            for k in range(MOST + 1):
+                self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
+                step = self.round(model)
+                steps.append(step)
+                if step.added is None or k == MOST:
+                    break
+                self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
+                model = self.refit(self.extended(model, step.added.hypothesis))
+        except KeyboardInterrupt:
+            steps = [step for step in steps if step.added is None or step.added.name in model.effects]
+            return Found(base, model, tuple(steps), interrupted=True)
+        return Found(base, model, tuple(steps))
+
+    def extended(self, model: Model, h: Hypothesis) -> Model:
+        """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
+        names, prior, _ = self.priors(model)
+        moved = {}
+        for n, shift, p in zip(names, h.shift, prior, strict=True):
+            s = model.specification(n)
+            moved[n] = min(max(model[n] + shift * p, s.low), s.high)
+        return model.with_parameters(moved).with_effects([*model.effects, h.name], h.values)
+
+    def priors(self, model: Model) -> tuple[tuple[str, ...], Array, dict[str, float]]:
+        """Free parameters, their prior deviations and centres: the start's within 5 %, of added effects hardly any."""
+        names, deviation, centre = [], [], {}
+        for name in default_free(model):
+            section, _, _key = name.partition(".")
+            if name in UNSEEN:
+                continue
+            if section in self.start.effects:
+                size = max(abs(self.start[name]), abs(self.start.specification(name).default))
+                middle, width = self.start[name], 0.05 * size
+            else:
+                c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
+                middle, width = _prior(c, model[name])
+            names.append(name)
+            deviation.append(width)
+            centre[name] = middle
+        return tuple(names), np.array(deviation), centre
+
+    def refit(self, model: Model) -> Model:
+        """All free parameters fitted to the training evidence."""
+        names, prior, centre = self.priors(model)
+        return fit_base(self.train, model, names, centre, prior)[0]
+
+    def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
+        """The model on training and held-out evidence."""
+        names, prior, centre = self.priors(model)
+        return base_fit(self.train, model, names, centre, prior), base_fit(self.held, model, names, centre, prior)
+
+    def round(self, model: Model) -> Step:
+        """Rank all candidates on the training runs, try the best on the held-out ones."""
+        base, held = self.fits(model)
+        short: list[Hypothesis] = []
+        for h in screen(self.worst(base)):
+            if h.name not in [s.name for s in short]:
+                short.append(h)
+        reference = log_likelihood(self.train, base.residual) + log_likelihood(self.held, held.residual)
+        reference -= 0.5 * float(np.sum(base.offset**2))
+        tried = refine(base, short[:SHORTLIST])
+        trials = put_on_trial(base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects)
+        good = [trial for trial in trials if not trial.objections]
+        best = good[0] if good else None
+        others = rivals(base, held, best, trials) if best else []
+        return Step(
+            model, tuple(trials), best, tuple(others), _scales(self.held, held.residual),
+            _scales(self.held, best.held if best else held.residual),
+        )  # fmt: skip
+
+
+    def worst(self, base: BaseFit) -> BaseFit:
+        """The part of the training evidence where the model is worst: enough to rank by."""
+        runs, left = [], SCREENED
+        e = base.evidence
+        misfit = [float(np.mean(huber(base.residual[e.run == i]))) for i in range(len(e.runs))]
+        for i in np.argsort(misfit)[::-1]:
+            if left > 0.0:
+                runs.append(int(i))
+                left -= float(e.runs[i].time[-1])
+        part, rows = e.only(runs)
+        return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
+
+
+def _prior(c, value: float) -> tuple[float, float]:
+    if c.logarithmic:
+        return c.typical if c.is_size is False else value, max(abs(value), 1e-12) * c.prior
+    return (c.neutral or 0.0), abs(c.scale) * c.prior
+
+
+def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:
+    from pneumo_ros.discover.hypothesis import family_scales
+
+    return dict(zip(evidence.names, family_scales(evidence, residual).tolist(), strict=True))

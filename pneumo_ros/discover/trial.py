@@ -1,0 +1,208 @@
+"""What speaks for a candidate and what against: everything that has to hold before an effect is added."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, cluster_robust, family_scales, huber, weights
+from pneumo_ros.discover.ranking import wald
+
+Array = NDArray[np.float64]
+
+T_LEAST = 5.0
+GAIN_LEAST = 0.05  # of the mean square of an equation's residual on held-out runs
+Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
+SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
+SPOILED = 0.05  # share by which no equation may get worse
+MATERIAL = 0.1  # of the usual size
+TIED = 2.5  # deviations by which a rival must be worse to be told apart
+DECOYS = 12
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One candidate on trial: its fit, and what the runs that took no part in it say."""
+
+    hypothesis: Hypothesis
+    held: Array = field(repr=False)  # residual on held-out runs
+    gain: dict[str, float]  # by equation: share of the mean square residual on held-out runs that it removes
+    z: float  # of the loss it removes there, over its scatter between blocks
+    size: float  # in usual ones
+    stable: bool
+    share: float  # of what noise does not explain in the equation it helps most, on held-out runs
+    first: bool  # whether nothing was added before
+    decoy: float  # the largest t that a copy of its trace shifted in time reaches
+    score: float  # log likelihood over the base, training and held-out runs together
+
+    @property
+    def name(self) -> str:
+        """Catalogue name."""
+        return self.hypothesis.name
+
+    @property
+    def objections(self) -> tuple[str, ...]:
+        """Why it may not be added; empty when it may."""
+        h, found = self.hypothesis, []
+        if h.t < T_LEAST:
+            found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
+        elif h.t < 1.5 * self.decoy:
+            found.append(f"t is {h.t:.1f}, and its trace shifted in time reaches {self.decoy:.1f}")
+        if max(self.gain.values(), default=0.0) < GAIN_LEAST:
+            found.append(f"removes {100.0 * max(self.gain.values(), default=0.0):.1f} % on held-out runs")
+        elif self.z < Z_LEAST:
+            found.append("its gain on held-out runs is within their scatter")
+        worst = min(self.gain, key=lambda name: self.gain[name])
+        if self.gain[worst] < -SPOILED:
+            found.append(f"makes {worst} {-100.0 * self.gain[worst]:.0f} % worse on held-out runs")
+        if self.share < SHARE_LEAST[0 if self.first else 1]:
+            found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
+        if self.size < MATERIAL:
+            found.append(f"its size is {self.size:.2g} of the usual one")
+        if not self.stable:
+            found.append("its size depends on which run is left out")
+        return tuple(found)
+
+
+def equation_of(name: str) -> str:
+    """The equation of a family: momentum, chamber_a, chamber_b or breakaway."""
+    return name.partition(" ")[0]
+
+
+def mean_squares(evidence: Evidence, residual: Array) -> dict[str, float]:
+    """Robust mean square of the residual over noise by equation, the mean over its families."""
+    scale = family_scales(evidence, residual)
+    found: dict[str, list[float]] = {}
+    for k, name in enumerate(evidence.names):
+        if (evidence.family == k).any():
+            found.setdefault(equation_of(name), []).append(float(scale[k] ** 2))
+    return {name: float(np.mean(values)) for name, values in found.items()}
+
+
+def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
+    """By equation, the share of the mean square residual that `after` lacks against `before`."""
+    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    return {name: 1.0 - second[name] / first[name] for name in first}
+
+
+def explained(evidence: Evidence, before: Array, after: Array) -> float:
+    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
+    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    noise = {name: 1.0 for name in first} | {"breakaway": 0.2**2}
+    return max((first[n] - max(second[n], noise[n])) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+
+
+def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
+    """Loss that `better` saves against `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
+    scale = family_scales(evidence, better)[evidence.family]
+    difference = 0.36 * (huber(worse / scale) - huber(better / scale))
+    blocks = np.bincount(evidence.block, difference)
+    spread = float(np.sqrt(np.sum(blocks**2)))
+    return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0
+
+
+def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:
+    """The same over several bodies of evidence, (evidence, worse, better) each: deviations."""
+    total = spread = 0.0
+    for evidence, worse, better in pairs:
+        saved, z = advantage(evidence, worse, better)
+        total += saved
+        spread += (saved / z) ** 2 if z else 0.0
+    return total / np.sqrt(spread) if spread > 0.0 else 0.0
+
+
+def magnitude(h: Hypothesis) -> float:
+    """Largest size of a hypothesis in usual ones."""
+    found = [0.0]
+    for c, u in zip(h.coordinates, h.u, strict=True):
+        if c.is_size:
+            value = c.value(float(u))
+            if c.logarithmic:
+                found.append(0.0 if value == c.neutral else c.typical / value)
+            else:
+                found.append(abs(float(u)))
+    return max(found)
+
+
+def _parts(base: BaseFit, h: Hypothesis) -> tuple[Array, Array, Array]:
+    """Weighted slopes (residuals, base + candidate), weighted residual, and ridge, at the hypothesis."""
+    w = weights(base.evidence, h.residual, family_scales(base.evidence, h.residual))
+    K = np.concatenate([base.slopes, h.slopes], axis=1)
+    ridge = np.concatenate([np.ones(len(base.names)), [1.0 / c.prior**2 for c in h.coordinates]])
+    return K * w[:, None], w * h.residual, ridge
+
+
+def stable(base: BaseFit, h: Hypothesis) -> bool:
+    """Whether the sizes keep their sign and half their value, whichever run is left out (linearised)."""
+    A, e, ridge = _parts(base, h)
+    p, normal = len(base.names), A.T @ A
+    sizes = [k for k, c in enumerate(h.coordinates) if c.is_size and not c.logarithmic]
+    if not sizes:
+        return True
+    u = h.u[sizes]
+    for run in range(len(base.evidence.runs)):
+        own = base.evidence.run == run
+        left = normal - A[own].T @ A[own] + np.diag(ridge)
+        shift = np.linalg.solve(left, A[own].T @ e[own])[p:][sizes]  # the other runs' optimum: their gradient is minus it
+        if float(u @ (u + shift)) < 0.5 * float(u @ u):
+            return False
+    return True
+
+
+def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
+    """Largest t among copies of the candidate's trace shifted in time, each within its runs."""
+    evidence, p = base.evidence, len(base.names)
+    w = weights(evidence, h.residual, family_scales(evidence, h.residual))
+    B, e = base.slopes * w[:, None], w * h.residual
+    sizes = [k for k, c in enumerate(h.coordinates) if c.is_size]
+    C = h.slopes[:, sizes]
+    groups = [np.flatnonzero((evidence.family == f) & (evidence.run == r))
+              for f in range(len(evidence.names)) for r in range(len(evidence.runs))]
+    largest = 0.0
+    for _ in range(DECOYS):
+        shifted = np.empty_like(C)
+        for rows in groups:
+            if len(rows):
+                shifted[rows] = np.roll(C[rows], int(rng.uniform(0.1, 0.9) * len(rows)), axis=0)
+        A = np.concatenate([B, shifted * w[:, None]], axis=1)
+        bread = np.linalg.inv(A.T @ A + np.diag(np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])))
+        x = -bread @ (A.T @ e)
+        cov = cluster_robust(A, e + A @ x, evidence.block, bread)
+        largest = max(largest, wald(x[p:], cov[p:, p:]))
+    return largest
+
+
+def put_on_trial(
+    base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis], residuals: Sequence[Array], reference: float,
+    first: bool,
+) -> list[Trial]:
+    """Trials of refined hypotheses with their held-out residuals, best score first; `reference`: the base's score."""
+    from pneumo_ros.discover.hypothesis import log_likelihood
+
+    rng, found = np.random.default_rng(0), []
+    for h, r in zip(hypotheses, residuals, strict=True):
+        found.append(
+            Trial(
+                h, r, gains(held.evidence, held.residual, r), advantage(held.evidence, held.residual, r)[1],
+                magnitude(h), stable(base, h), explained(held.evidence, held.residual, r), first, decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
+                h.likelihood + log_likelihood(held.evidence, r) - reference,
+            )
+        )  # fmt: skip
+    return sorted(found, key=lambda trial: -trial.score)
+
+
+def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -> list[Trial]:
+    """Trials whose residuals all runs together cannot tell from the best one's."""
+    found = []
+    for other in others:
+        if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
+            continue
+        z = pooled_advantage([
+            (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
+            (held.evidence, other.held, best.held),
+        ])
+        if z < TIED:
+            found.append(other)
+    return found
