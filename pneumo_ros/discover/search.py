@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.basefit import base_fit, fit_base
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, huber, log_likelihood
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, huber, log_likelihood, missing
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen
+from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.trial import Trial, put_on_trial, rivals
 from pneumo_ros.identify.refit import default_free
 from pneumo_ros.identify.run import Run
@@ -52,6 +53,7 @@ class Search:
     def __init__(self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None) -> None:
         self.progress = progress or (lambda share, text: None)
         self.start = model
+        self.quality = (float("nan"), float("nan"))  # median error of slips, training and held-out
         self.train, self.held = Evidence(model, train), Evidence(model, held)
 
     def run(self) -> Found:
@@ -62,12 +64,16 @@ class Search:
         try:
             for k in range(MOST + 1):
                 self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
-                step = self.round(model)
+                step, screened = self.round(model)
                 steps.append(step)
                 if step.added is None or k == MOST:
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                 model = self.refit(self.extended(model, step.added.hypothesis))
+            self.progress(0.85, "looking at breakaways and reversals")
+            model, last = self.slip_round(model, screened)
+            if last is not None:
+                steps[-1:] = [last, replace(steps[-1], model=model)] if last.added else [last]
         except KeyboardInterrupt:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
@@ -110,11 +116,39 @@ class Search:
         names, prior, centre = self.priors(model)
         return base_fit(self.train, model, names, centre, prior), base_fit(self.held, model, names, centre, prior)
 
-    def round(self, model: Model) -> Step:
+    def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
+        """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
+        from pneumo_ros.discover.diagnosis import deviations
+
+        made = slips(model, self.train.runs, self.held.runs)
+        if made is None:
+            return model, None
+        alone, found = made
+        known = deviations(self, model)
+        alone = polished(alone, found, known)
+        train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
+        self.quality = (float(np.median(train)), float(np.median(held)))
+        model = with_values_of(model, alone)
+        if max(self.quality) < POOR:
+            return model, None
+        tried = try_candidates(alone, found, blind(screened, alone), known)
+        first = model.effects == self.start.effects
+        trials = [as_trial(c, missing(alone)[c.name], train, held, first) for c in tried]
+        good = [t for t in trials if not t.objections]
+        best = good[0] if good else None
+        step = Step(model, tuple(trials), best, (), {"slip": self.quality[1]}, {"slip": self.quality[1]})
+        if best is not None:
+            chosen = next(c for c in tried if c.name == best.name)
+            model = with_values_of(model.with_effects([*model.effects, best.name]), chosen.model)
+            self.quality = (float(np.median(chosen.train)), float(np.median(chosen.held)))
+        return model, step
+
+    def round(self, model: Model) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fits(model)
         short: list[Hypothesis] = []
-        for h in screen(self.worst(base)):
+        screened = screen(self.worst(base))
+        for h in screened:
             if h.name not in [s.name for s in short]:
                 short.append(h)
         reference = log_likelihood(self.train, base.residual) + log_likelihood(self.held, held.residual)
@@ -124,10 +158,11 @@ class Search:
         good = [trial for trial in trials if not trial.objections]
         best = good[0] if good else None
         others = rivals(base, held, best, trials) if best else []
-        return Step(
+        step = Step(
             model, tuple(trials), best, tuple(others), _scales(self.held, held.residual),
             _scales(self.held, best.held if best else held.residual),
         )  # fmt: skip
+        return step, screened
 
 
     def worst(self, base: BaseFit) -> BaseFit:
@@ -141,6 +176,11 @@ class Search:
                 left -= float(e.runs[i].time[-1])
         part, rows = e.only(runs)
         return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
+
+
+def with_values_of(model: Model, other: Model) -> Model:
+    """The model with all parameters that `other` has at its values."""
+    return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
 
 
 def _prior(c, value: float) -> tuple[float, float]:

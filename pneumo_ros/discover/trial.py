@@ -18,6 +18,7 @@ Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
 SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
 SPOILED = 0.05  # share by which no equation may get worse
 MATERIAL = 0.1  # of the usual size
+MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
 DECOYS = 12
 
@@ -98,7 +99,7 @@ def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, f
     """Loss that `better` saves against `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
     scale = family_scales(evidence, better)[evidence.family]
     difference = 0.36 * (huber(worse / scale) - huber(better / scale))
-    blocks = np.bincount(evidence.block, difference)
+    blocks = np.clip(np.bincount(evidence.block, difference), -MOST_BLOCK, MOST_BLOCK)
     spread = float(np.sqrt(np.sum(blocks**2)))
     return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0
 

@@ -1,0 +1,158 @@
+"""What no equation along the motion shows: effects that act between sticking and sliding, judged by short simulations.
+
+The mechanics alone are simulated through breakaways, stops and reversals, every start fitted anew. How well a model
+does is told by the median over events of the squared error per sample: a single breakaway caught a moment too early or
+too late, which no start mends, says nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.coordinates import Coordinate
+from pneumo_ros.discover.hypothesis import Hypothesis, missing
+from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical
+from pneumo_ros.discover.trial import Trial
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.identify.refit import refit_segments
+from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.segments import Segments
+from pneumo_ros.identify.start import fit_starts
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
+POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
+BLIND = 10.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
+FEWEST = 12  # events
+_TAIL = 4.0
+_SIZES = (0.3, 1.0, 2.5)
+
+
+@dataclass(frozen=True)
+class Slips:
+    """Events of training and held-out runs, for one mechanical model and its variants."""
+
+    train_runs: tuple[Run, ...]
+    held_runs: tuple[Run, ...]
+    train_rows: Rows
+    held_rows: Rows
+
+    def train(self, model: Model) -> Segments:
+        """Training events, first guesses by `model`."""
+        return events(model, self.train_runs, self.train_rows)
+
+    def held(self, model: Model) -> Segments:
+        """Held-out events."""
+        return events(model, self.held_runs, self.held_rows)
+
+
+def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Model, Slips] | None:
+    """The mechanics of `model` and the events to judge them by; None where either is missing."""
+    alone = mechanical(model)
+    if alone is None or "lugre_friction" not in alone.effects:
+        return None
+    first, second = (tuple(driven_by_pressures(model, run) for run in runs) for runs in (train, held))
+    found = Slips(first, second, event_rows(alone, first), event_rows(alone, second))
+    return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST else None
+
+
+def errors(model: Model, segments: Segments) -> Array:
+    """Mean squared error per sample over the noise's (events,), robust, every start fitted."""
+    x = fit_starts(model, segments)
+    size = np.abs(segments.residuals(model, x)[0])
+    loss = np.where(size < _TAIL, 0.5 * size**2, _TAIL * (size - 0.5 * _TAIL))
+    total = np.sum(loss, axis=1) + 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
+    return np.asarray(2.0 * total / size.shape[1])
+
+
+def polished(alone: Model, found: Slips, known: dict[str, float]) -> Model:
+    """The mechanics with their friction refitted to the training events.
+
+    `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise.
+    """
+    names = [f"lugre_friction.{key}" for key in FREE]
+    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    new = refit_segments(alone, found.train(alone), names, prior).model
+    before, after = (float(np.median(errors(m, found.train(m)))) for m in (alone, new))
+    return new if after < before else alone
+
+
+@dataclass(frozen=True)
+class Slipping:
+    """A candidate on the events: the mechanics with it, and errors per event without and with it, both ways."""
+
+    name: str
+    model: Model
+    train: Array
+    held: Array
+
+
+def try_candidates(alone: Model, found: Slips, names: Sequence[str], known: dict[str, float]) -> list[Slipping]:
+    """Each named effect added to the mechanics and fitted to the training events; best held-out median first."""
+    result = []
+    for name in names:
+        fitted = _fit(alone, found, name, missing(alone)[name], known)
+        if fitted is not None:
+            result.append(Slipping(name, fitted, errors(fitted, found.train(fitted)), errors(fitted, found.held(fitted))))
+    return sorted(result, key=lambda s: float(np.median(s.train) + np.median(s.held)))
+
+
+def _fit(
+    alone: Model, found: Slips, name: str, effect: tuple[Coordinate, ...], known: dict[str, float]
+) -> Model | None:
+    options = []
+    for share in _SIZES:
+        values = {c.name: c.value(-np.log(share) if c.logarithmic and c.is_size else share if c.is_size else 0.0) for c in effect}
+        try:
+            model = alone.with_effects([*alone.effects, name], values)
+        except PneumoError:
+            return None
+        few = found.train(model).pick(np.arange(0, len(found.train_rows), 3))
+        options.append((float(np.median(errors(model, few))), model))
+    model = min(options, key=lambda option: option[0])[1]
+    names = [f"lugre_friction.{key}" for key in FREE]
+    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(model[c.name])) for c in effect}
+    return refit_segments(model, found.train(model), [*names, *(c.name for c in effect)], prior).model
+
+
+def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
+    """Effects of the mechanics about which the equations along the motion say next to nothing."""
+    builds = missing(alone)
+    seen: dict[str, float] = {}
+    for h in screened:
+        spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
+        seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
+    return [name for name, t in seen.items() if name in builds and t < BLIND]
+
+
+def share_removed(before: Array, after: Array) -> float:
+    """Share of the median error beyond the noise's that is gone."""
+    first, second = float(np.median(before)), float(np.median(after))
+    return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
+
+
+def deviations_better(before: Array, after: Array) -> float:
+    """By how many deviations more events than half got better (sign test)."""
+    wins, count = int(np.sum(after < before)), len(before)
+    return float((wins - 0.5 * count) / (0.5 * np.sqrt(count))) if count else 0.0
+
+
+def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, base_held: Array, first: bool) -> Trial:
+    """The candidate in the form in which all candidates are judged."""
+    u = np.array([k.u(c.model[k.name]) for k in effect])
+    z_train, z_held = deviations_better(base_train, c.train), deviations_better(base_held, c.held)
+    h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=z_train)
+    sizes = [abs(x) for k, x in zip(effect, u, strict=True) if k.is_size and not k.logarithmic]
+    gain = 1.0 - float(np.median(c.held) / np.median(base_held))
+    return Trial(
+        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share_removed(base_held, c.held), first, 0.0,
+        float(np.median(base_train) - np.median(c.train)),
+    )  # fmt: skip
+
+
