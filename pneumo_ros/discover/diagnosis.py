@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.compare import Comparison, compare
+from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
 from pneumo_ros.discover.basefit import base_fit
 from pneumo_ros.discover.hypothesis import cluster_robust, family_scales, weights
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 HORIZON = 1.0  # s
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
 MATERIAL_FORCE = 0.01  # of the driving force: less is texture that no model has
+REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 
 
 def diagnose(
@@ -54,7 +55,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         for k, step in enumerate(s for s in found.steps if s.added)
     )
     before, after = comparisons[1], comparisons[-1]
-    unexplained = remains(after)
+    unexplained = remains(before, after)
     return Outcome(
         verdict=verdict(added, unexplained),
         failing=failing(before, added, found.base),
@@ -108,7 +109,7 @@ def deviations(search: Search, model: Model) -> dict[str, float]:
     A = base.slopes * w[:, None]
     normal = A.T @ A
     bread = np.linalg.inv(normal + np.eye(len(names)))
-    cov = cluster_robust(A, w * base.residual, search.train.block, bread)
+    cov = cluster_robust(A, w * base.residual, search.train.block, bread, np.ones(len(names)))
     robust, plain = np.sqrt(np.diag(cov)), np.sqrt(np.diag(bread))
     std = np.maximum(robust, plain) * prior
     return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in zip(names, std, prior, strict=True)}
@@ -148,24 +149,43 @@ def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tupl
     return tuple(found)
 
 
-def remains(after: Comparison) -> Unexplained | None:
+def remains(before: Comparison, after: Comparison) -> Unexplained | None:
     """The equation that fails worst, over the variable that explains it best; None where nothing of size remains."""
-    worst, ratio = None, SIGNIFICANT
+    worst, most = None, 1.0
     for name, equation in after.equations.items():
-        if equation.explained_by_noise is False and equation.ratio_to_noise > ratio:
-            worst, ratio = name, equation.ratio_to_noise
+        if equation.explained_by_noise is False and excess(equation) > most:
+            worst, most = name, excess(equation)
     if worst is None or not after.dependences.get(worst):
         return None
     against, best = max(after.dependences[worst].items(), key=lambda item: item[1].explained_share)
     bins, equation = best.bins, after.equations[worst]
     return Unexplained(
         worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,
-        equation.residual_rms, best.explained_share,
+        equation.residual_rms, best.explained_share, material(worst, before, after),
     )  # fmt: skip
+
+
+def excess(equation: EquationVerdict) -> float:
+    """Mean square of a residual beyond the noise's, in units of what is significant: above 1 it is."""
+    return (equation.ratio_to_noise**2 - 1.0) / (SIGNIFICANT**2 - 1.0)
+
+
+def material(name: str, before: Comparison, after: Comparison) -> bool:
+    """Whether what remains matters: forces beyond a per cent of the drive, and no small rest of what was explained."""
+    first, last = before.equations[name], after.equations[name]
+    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * drive(after):
+        return False
+    return excess(last) > REST * excess(first)
+
+
+def drive(comparison: Comparison) -> float:
+    """Root mean square of the force that drives the piston over all runs [N]."""
+    forces = [run.course.seen["drive"] - run.course.seen["force"] for run in comparison.runs]
+    return float(np.sqrt(np.mean(np.concatenate(forces) ** 2)))
 
 
 def verdict(added: Sequence[Addition], unexplained: Unexplained | None) -> str:
     """The one word for it."""
-    if unexplained is not None and not added:
+    if unexplained is not None and unexplained.material:
         return UNKNOWN
     return FOUND if added else ADEQUATE

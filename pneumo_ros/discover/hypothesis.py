@@ -77,6 +77,7 @@ class Hypothesis:
     residual: Array = field(repr=False)
     likelihood: float = -np.inf
     t: float = 0.0
+    relief: float = 0.0  # log likelihood of the priors that base parameters regain beside it
     covariance: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slopes: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
 
@@ -145,9 +146,12 @@ def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Ar
     return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
 
 
-def cluster_robust(A: Array, e: Array, block: Array, bread: Array) -> Array:
-    """Covariance of a least-squares estimate whose errors belong together in blocks (Liang and Zeger 1986)."""
+def cluster_robust(A: Array, e: Array, block: Array, bread: Array, ridge: Array) -> Array:
+    """Covariance of a least-squares estimate whose errors belong together in blocks (Liang and Zeger 1986).
+
+    What a prior holds (`ridge`, its information) is as uncertain as the prior says.
+    """
     scores = np.zeros((int(block.max()) + 1, A.shape[1]))
     np.add.at(scores, block, A * e[:, None])
     n = len(scores)
-    return np.asarray(bread @ (scores.T @ scores) @ bread * (n / max(n - A.shape[1], 1)))
+    return np.asarray(bread @ (scores.T @ scores * (n / max(n - A.shape[1], 1)) + np.diag(ridge)) @ bread)

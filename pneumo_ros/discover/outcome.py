@@ -63,6 +63,7 @@ class Unexplained:
     unit: str
     rms: float
     share: float  # of the residual's square that the variable explains, predicted for data left out
+    material: bool  # whether it is of a size that matters, rather than texture or the rest of an added effect's shape
 
 
 @dataclass(frozen=True)

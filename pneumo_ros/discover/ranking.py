@@ -51,7 +51,7 @@ def _linear(base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, 
         x, A, bread = solve(K, base.residual, weights(base.evidence, after, scale), ridge, offset)
         after = base.residual + K @ x
     w = weights(base.evidence, after, scale)
-    cov = cluster_robust(A, w * after, base.evidence.block, bread)[p:, p:]
+    cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
     start = u.copy()
     for k, size in zip(sizes, x[p:], strict=True):
         c = effect[k]
@@ -164,11 +164,14 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     w = weights(base.evidence, after, family_scales(base.evidence, after))
     A = K * w[:, None]
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))
-    cov = cluster_robust(A, w * after, base.evidence.block, bread)[p:, p:]
+    cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
     distance = np.array([_distance(h.coordinates[j], u[j]) for j in sizes])
     t = wald(distance, cov[np.ix_(sizes, sizes)])
-    return replace(h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C)
+    relief = 0.5 * float(np.sum(base.offset**2) - np.sum((shift + base.offset) ** 2))
+    return replace(
+        h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C, relief=relief
+    )
 
 
 def _distance(c: Coordinate, u: float) -> float:

@@ -17,6 +17,7 @@ GAIN_LEAST = 0.05  # of the mean square of an equation's residual on held-out ru
 Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
 SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
 SPOILED = 0.05  # share by which no equation may get worse
+RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
@@ -44,9 +45,17 @@ class Trial:
         return self.hypothesis.name
 
     @property
+    def absorbed(self) -> bool:
+        """Whether base parameters stand in for it: the data cannot tell, but what is known of those parameters can."""
+        h = self.hypothesis
+        return h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF and self.size >= MATERIAL and self.stable
+
+    @property
     def objections(self) -> tuple[str, ...]:
         """Why it may not be added; empty when it may."""
-        h, found = self.hypothesis, []
+        h, found = self.hypothesis, list[str]()
+        if self.absorbed:
+            return ()
         if h.t < T_LEAST:
             found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
         elif h.t < 1.5 * self.decoy:
@@ -170,7 +179,7 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
         A = np.concatenate([B, shifted * w[:, None]], axis=1)
         bread = np.linalg.inv(A.T @ A + np.diag(np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])))
         x = -bread @ (A.T @ e)
-        cov = cluster_robust(A, e + A @ x, evidence.block, bread)
+        cov = cluster_robust(A, e + A @ x, evidence.block, bread, np.zeros(len(x)))
         largest = max(largest, wald(x[p:], cov[p:, p:]))
     return largest
 
