@@ -104,7 +104,7 @@ def noise_levels(comparison: Comparison) -> dict[str, float]:
 def deviations(search: Search, model: Model) -> dict[str, float]:
     """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
     names, prior, centre = search.priors(model)
-    base = base_fit(search.train, model, names, centre, prior)
+    base = base_fit(search.train, search.whole, model, names, centre, prior)
     w = weights(search.train, base.residual, family_scales(search.train, base.residual))
     A = base.slopes * w[:, None]
     normal = A.T @ A

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import savgol_coeffs
 
 from pneumo_ros.discover.course import Frame, follow, follow_each, frame_of
 from pneumo_ros.identify.breakaway import REST, Breakaway, find_breakaways
@@ -101,8 +102,9 @@ class Course:
         last = self.families[-1]
         self.breakaways = last.breakaways
         width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)
+        self.kernel = savgol_coeffs(2 * reach + 1, 2)  # a parabola over +-8 ms
         self.spans = [
-            np.arange(max(b.index - width - reach, 0), min(b.index + reach + 1, len(run))) for b in self.breakaways
+            np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run))) for b in self.breakaways
         ]
         self.inner = [
             slice(max(b.index - width, 0) - span[0], b.index - span[0] + 1)
@@ -155,7 +157,7 @@ class Course:
         seen = self._see(model, q, states[rows], rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
         largest = [
-            max(float((d * smooth(part, self.run.sample_time, 0.008, 2)[inner]).max()), 0.0)
+            max(float((d * np.convolve(part, self.kernel, "same")[inner]).max()), 0.0)
             for part, inner, d in zip(load, self.inner, self.direction, strict=True)
         ]
         there = states[self.rested].copy()

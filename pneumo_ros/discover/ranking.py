@@ -56,7 +56,9 @@ def _linear(base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, 
     for k, size in zip(sizes, x[p:], strict=True):
         c = effect[k]
         start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
-    return Hypothesis(name, effect, start, x[:p], after, log_likelihood(base.evidence, after), wald(x[p:], cov), cov)
+    relief = 0.5 * float(np.sum(base.offset**2) - np.sum((x[:p] + base.offset) ** 2))
+    value = log_likelihood(base.evidence, after)
+    return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
 
 
 def wald(size: Array, covariance: Array) -> float:
@@ -68,10 +70,15 @@ def wald(size: Array, covariance: Array) -> float:
     return float(np.sqrt(max(value - (len(size) - 1), 0.0)))
 
 
-def refine(base: BaseFit, hypotheses: Sequence[Hypothesis], iterations: int = 5) -> list[Hypothesis]:
-    """Gauss-Newton of all coordinates of some candidates at once, each with its own step control."""
+def refine(
+    base: BaseFit, hypotheses: Sequence[Hypothesis], iterations: int = 5, settled: bool = False
+) -> list[Hypothesis]:
+    """Gauss-Newton of all coordinates of some candidates at once, each with its own step control.
+
+    Unless they are `settled`, each begins at the best of a few sizes.
+    """
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
-    trial = _best_sizes(base, hypotheses)
+    trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
     moving = list(range(len(best)))
     for k in range(iterations):
         variants: list[dict[str, float]] = []
@@ -91,8 +98,7 @@ def refine(base: BaseFit, hypotheses: Sequence[Hypothesis], iterations: int = 5)
                 best[i], trial[i] = tried, _next(base, tried, C, residual[at])
             else:
                 trial[i] = 0.5 * (u + h.u)
-            settled = 0.0 < tried.likelihood - h.likelihood < 0.3
-            if settled or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
+            if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
                 moving.remove(i)
     return best
 
@@ -111,6 +117,8 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
             own += [np.where(fading, h.u + shift, h.u) for shift in (-0.7, 0.7, 1.4) if fading.any()]
         options.append([np.array([c.clip(x) for c, x in zip(h.coordinates, u, strict=True)]) for u in own])
     variants = [_values(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
+    if not variants:
+        return []
     residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
     found, at = [], 0
     for own in options:
@@ -130,6 +138,11 @@ def _at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
         after = here + base.slopes @ shift
     value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((shift + base.offset) ** 2))
     return shift, after, value
+
+
+def unaided(base: BaseFit) -> float:
+    """Log likelihood that base parameters reach without any candidate, by one linear step like the candidates'."""
+    return log_likelihood(base.evidence, _at_best(base, base.residual)[1])
 
 
 def _values(h: Hypothesis, u: Array) -> dict[str, float]:

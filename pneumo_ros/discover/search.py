@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.basefit import base_fit, fit_base
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, huber, log_likelihood, missing
-from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything, huber, log_likelihood, missing
+from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.trial import Trial, put_on_trial, rivals
 from pneumo_ros.identify.refit import default_free
@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
+PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
+FINALISTS = 4  # candidates that are fitted to all training runs
 MOST = 4  # effects added
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -53,6 +55,7 @@ class Search:
     def __init__(self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None) -> None:
         self.progress = progress or (lambda share, text: None)
         self.start = model
+        self.whole = everything(model, missing(model))  # one kernel for all that may be added
         self.quality = (float("nan"), float("nan"))  # median error of slips, training and held-out
         self.train, self.held = Evidence(model, train), Evidence(model, held)
 
@@ -109,12 +112,15 @@ class Search:
     def refit(self, model: Model) -> Model:
         """All free parameters fitted to the training evidence."""
         names, prior, centre = self.priors(model)
-        return fit_base(self.train, model, names, centre, prior)[0]
+        return fit_base(self.train, self.whole, model, names, centre, prior)
 
     def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence."""
         names, prior, centre = self.priors(model)
-        return base_fit(self.train, model, names, centre, prior), base_fit(self.held, model, names, centre, prior)
+        return (
+            base_fit(self.train, self.whole, model, names, centre, prior),
+            base_fit(self.held, self.whole, model, names, centre, prior),
+        )
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
@@ -146,14 +152,16 @@ class Search:
     def round(self, model: Model) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fits(model)
-        short: list[Hypothesis] = []
-        screened = screen(self.worst(base))
+        part = self.worst(base)
+        screened = screen(part)
+        least, short = unaided(part) + PROMISING, list[Hypothesis]()
         for h in screened:
-            if h.name not in [s.name for s in short]:
+            if h.name not in [s.name for s in short] and (h.likelihood > least or h.relief > PROMISING):
                 short.append(h)
         reference = log_likelihood(self.train, base.residual) + log_likelihood(self.held, held.residual)
         reference -= 0.5 * float(np.sum(base.offset**2))
-        tried = refine(base, short[:SHORTLIST])
+        tried = sorted(refine(part, short[:SHORTLIST]), key=lambda h: -h.likelihood)
+        tried = refine(base, tried[:FINALISTS], iterations=2, settled=True)
         trials = put_on_trial(base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects)
         good = [trial for trial in trials if not trial.objections]
         best = good[0] if good else None
