@@ -77,7 +77,9 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     p = effect.parameters[key]
     typical = p.default
     if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: how much is usual?
-        like = [abs(o.default - o.neutral) for o in effect.parameters.values() if o.neutral is not None and o.unit == p.unit]
+        like = [
+            abs(o.default - o.neutral) for o in effect.parameters.values() if o.neutral is not None and o.unit == p.unit
+        ]
         span = _RANGE * (p.high - p.low) if np.isfinite(p.high - p.low) else 1.0
         typical = p.neutral + (max(like, default=0.0) or span)
     return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high)

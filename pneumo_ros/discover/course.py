@@ -63,7 +63,7 @@ def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
 
 
 def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple[int, Array, Array]]:
-    """For each parameter vector, in any order: its index, states (n, states) and claimed derivatives of v, p_a, p_b (n, 1 or 3).
+    """For each parameter vector, in any order: its index, states (n, states), claimed derivatives of v, p_a, p_b.
 
     Where the vector makes sensors differ from the states, the measured states are first corrected for what it claims
     the sensors do: x = measured - (observed(x) - x), twice.
@@ -109,13 +109,15 @@ def _corrected(model: Model, q: Array, frame: Frame, states: Array) -> Array:
     """The frame's states whose observation is what was measured, by one fixed-point step."""
     names = model.composition.observed
     seen = np.empty((len(states), len(names)))
-    model.kernel.observe(np.ascontiguousarray(states), q, np.append(frame.run.held, frame.run.held[-1]), frame.run.time, seen)
+    model.kernel.observe(
+        np.ascontiguousarray(states), q, np.append(frame.run.held, frame.run.held[-1]), frame.run.time, seen
+    )
     result = frame.states.copy()
     for column, name in ((0, "y"), (2, "p_a"), (3, "p_b")):
         if column < result.shape[1]:
             result[:, column] += states[:, column] - seen[:, names.index(SENSORS[name])]
     result[:, 1] += smooth(result[:, 0] - frame.states[:, 0], frame.run.sample_time, HALF_WIDTH, 3, 1)
-    return result
+    return np.asarray(result)
 
 
 def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:

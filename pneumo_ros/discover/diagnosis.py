@@ -23,16 +23,16 @@ MATERIAL_FORCE = 0.01  # of the driving force: less is texture that no model has
 REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 
 
-def diagnose(
-    model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None
-) -> Outcome:
+def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None) -> Outcome:
     """Which effects `model` lacks: refit, rank on `train`, confirm on `held`, add, repeat.
 
     Both are sequences of runs of one machine, `held` is never fitted. Raises UsageError when either is empty,
     DataError when a run does not fit the model.
     """
     if not train or not held:
-        raise UsageError("a diagnosis needs recordings to fit and others to judge by; give both, the latter by --holdout")
+        raise UsageError(
+            "a diagnosis needs recordings to fit and others to judge by; give both, the latter by --holdout"
+        )
     tell = progress or (lambda share, text: None)
     search = Search(model, train, held, lambda share, text: tell(0.8 * share, text))
     return conclude(search, search.run(), tell)

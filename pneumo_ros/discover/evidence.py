@@ -88,7 +88,8 @@ class Evidence:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals)."""
         with ThreadPoolExecutor(threads) as pool:
             parts = list(pool.map(lambda course: course.values(model, parameters), self.courses))
-        return np.nan_to_num(np.concatenate(parts, axis=1) / self.noise, nan=1e9, posinf=1e9, neginf=-1e9)
+        whole = np.concatenate(parts, axis=1) / self.noise
+        return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
 
 
 class Course:
@@ -104,7 +105,8 @@ class Course:
         width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)
         self.kernel = savgol_coeffs(2 * reach + 1, 2)  # a parabola over +-8 ms
         self.spans = [
-            np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run))) for b in self.breakaways
+            np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run)))
+            for b in self.breakaways
         ]
         self.inner = [
             slice(max(b.index - width, 0) - span[0], b.index - span[0] + 1)
@@ -239,5 +241,3 @@ def _sensitivity(model: Model, run: Run, states: Array, column: int, probe: floa
     pushed = states.copy()
     pushed[:, column] += probe
     return np.asarray((model.derivatives(pushed, held, run.time) - model.derivatives(states, held, run.time)) / probe)
-
-

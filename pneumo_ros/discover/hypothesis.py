@@ -146,7 +146,7 @@ def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Ar
     return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
 
 
-def cluster_robust(A: Array, e: Array, block: Array, bread: Array, ridge: Array) -> Array:
+def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:
     """Covariance of a least-squares estimate whose errors belong together in blocks (Liang and Zeger 1986).
 
     What a prior holds (`ridge`, its information) is as uncertain as the prior says.

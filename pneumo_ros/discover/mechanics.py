@@ -31,7 +31,9 @@ def mechanical(model: Model) -> Model | None:
     kept: list[str] = []
     for name in model.effects:
         try:
-            Model.build([*kept, name], {}, library=model.library, frame=("piston", "air"), name=model.name, defaults=True)
+            Model.build(
+                [*kept, name], {}, library=model.library, frame=("piston", "air"), name=model.name, defaults=True
+            )
         except PneumoError:
             if _moves(model, name):
                 return None
@@ -45,8 +47,8 @@ def mechanical(model: Model) -> Model | None:
 def _moves(model: Model, name: str) -> bool:
     """Whether an effect acts on the piston or on what its position sensor shows."""
     mechanics = {
-        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_rise", "slip", "stribeck", "y_measured",
-        "resistance",
+        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_rise", "slip", "stribeck",
+        "y_measured", "resistance",
     }  # fmt: skip
     functions = model.library.find(name).functions.values()
     return any(signal in mechanics for function in functions for signal in function.writes)

@@ -7,9 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate, starts
-from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import (
-    PROBE, BaseFit, Hypothesis, cluster_robust, family_scales, log_likelihood, missing, solve, vectors, weights,
+    PROBE,
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    family_scales,
+    log_likelihood,
+    missing,
+    solve,
+    vectors,
+    weights,
 )  # fmt: skip
 
 Array = NDArray[np.float64]
@@ -22,8 +30,9 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first."""
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
-    variants, spans = [{}], []
-    for name, effect, u in tasks:
+    variants: list[dict[str, float]] = [{}]
+    spans: list[tuple[int, int, list[int]]] = []
+    for _name, effect, u in tasks:
         shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
         sizes = [k for k, c in enumerate(effect) if c.is_size]
         own = []
@@ -40,7 +49,9 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     return sorted(result, key=lambda h: -h.likelihood)
 
 
-def _linear(base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, sizes: list[int], C: Array) -> Hypothesis:
+def _linear(
+    base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, sizes: list[int], C: Array
+) -> Hypothesis:
     """Linear fit of the sizes of one candidate beside the base parameters."""
     K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
     ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
@@ -80,7 +91,7 @@ def refine(
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
     trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
     moving = list(range(len(best)))
-    for k in range(iterations):
+    for _k in range(iterations):
         variants: list[dict[str, float]] = []
         spans = {}
         for i in moving:
@@ -173,7 +184,7 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     p = len(base.names)
     shift, after, value = _at_best(base, here)
     value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
-    K, ridge, offset = _system(base, h, u, C)
+    K, ridge, _offset = _system(base, h, u, C)
     w = weights(base.evidence, after, family_scales(base.evidence, after))
     A = K * w[:, None]
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))

@@ -1,13 +1,13 @@
 """The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import base_fit, fit_base
-from pneumo_ros.discover.coordinates import coordinates
+from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything, huber, log_likelihood, missing
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
@@ -52,7 +52,9 @@ class Found:
 class Search:
     """Everything that stays the same during one search."""
 
-    def __init__(self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None) -> None:
+    def __init__(
+        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
+    ) -> None:
         self.progress = progress or (lambda share, text: None)
         self.start = model
         self.whole = everything(model, missing(model))  # one kernel for all that may be added
@@ -162,7 +164,9 @@ class Search:
         reference -= 0.5 * float(np.sum(base.offset**2))
         tried = sorted(refine(part, short[:SHORTLIST]), key=lambda h: -h.likelihood)
         tried = refine(base, tried[:FINALISTS], iterations=2, settled=True)
-        trials = put_on_trial(base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects)
+        trials = put_on_trial(
+            base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects
+        )
         good = [trial for trial in trials if not trial.objections]
         best = good[0] if good else None
         others = rivals(base, held, best, trials) if best else []
@@ -171,7 +175,6 @@ class Search:
             _scales(self.held, best.held if best else held.residual),
         )  # fmt: skip
         return step, screened
-
 
     def worst(self, base: BaseFit) -> BaseFit:
         """The part of the training evidence where the model is worst: enough to rank by."""
@@ -191,7 +194,7 @@ def with_values_of(model: Model, other: Model) -> Model:
     return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
 
 
-def _prior(c, value: float) -> tuple[float, float]:
+def _prior(c: Coordinate, value: float) -> tuple[float, float]:
     if c.logarithmic:
         return c.typical if c.is_size is False else value, max(abs(value), 1e-12) * c.prior
     return (c.neutral or 0.0), abs(c.scale) * c.prior

@@ -99,7 +99,9 @@ def try_candidates(alone: Model, found: Slips, names: Sequence[str], known: dict
     for name in names:
         fitted = _fit(alone, found, name, missing(alone)[name], known)
         if fitted is not None:
-            result.append(Slipping(name, fitted, errors(fitted, found.train(fitted)), errors(fitted, found.held(fitted))))
+            result.append(
+                Slipping(name, fitted, errors(fitted, found.train(fitted)), errors(fitted, found.held(fitted)))
+            )
     return sorted(result, key=lambda s: float(np.median(s.train) + np.median(s.held)))
 
 
@@ -108,7 +110,10 @@ def _fit(
 ) -> Model | None:
     options = []
     for share in _SIZES:
-        values = {c.name: c.value(-np.log(share) if c.logarithmic and c.is_size else share if c.is_size else 0.0) for c in effect}
+        values = {
+            c.name: c.value(-np.log(share) if c.logarithmic and c.is_size else share if c.is_size else 0.0)
+            for c in effect
+        }
         try:
             model = alone.with_effects([*alone.effects, name], values)
         except PneumoError:
@@ -152,8 +157,6 @@ def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, bas
     sizes = [abs(x) for k, x in zip(effect, u, strict=True) if k.is_size and not k.logarithmic]
     gain = 1.0 - float(np.median(c.held) / np.median(base_held))
     return Trial(
-        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share_removed(base_held, c.held), first, 0.0,
-        float(np.median(base_train) - np.median(c.train)),
+        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True,
+        share_removed(base_held, c.held), first, 0.0, float(np.median(base_train) - np.median(c.train)),
     )  # fmt: skip
-
-

@@ -100,7 +100,7 @@ def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
 def explained(evidence: Evidence, before: Array, after: Array) -> float:
     """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
     first, second = mean_squares(evidence, before), mean_squares(evidence, after)
-    noise = {name: 1.0 for name in first} | {"breakaway": 0.2**2}
+    noise = dict.fromkeys(first, 1.0) | {"breakaway": 0.2**2}
     return max((first[n] - max(second[n], noise[n])) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
 
 
@@ -155,7 +155,9 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
     for run in range(len(base.evidence.runs)):
         own = base.evidence.run == run
         left = normal - A[own].T @ A[own] + np.diag(ridge)
-        shift = np.linalg.solve(left, A[own].T @ e[own])[p:][sizes]  # the other runs' optimum: their gradient is minus it
+        shift = np.linalg.solve(left, A[own].T @ e[own])[p:][
+            sizes
+        ]  # the other runs' optimum: their gradient is minus it
         if float(u @ (u + shift)) < 0.5 * float(u @ u):
             return False
     return True
@@ -168,8 +170,11 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
     B, e = base.slopes * w[:, None], w * h.residual
     sizes = [k for k, c in enumerate(h.coordinates) if c.is_size]
     C = h.slopes[:, sizes]
-    groups = [np.flatnonzero((evidence.family == f) & (evidence.run == r))
-              for f in range(len(evidence.names)) for r in range(len(evidence.runs))]
+    groups = [
+        np.flatnonzero((evidence.family == f) & (evidence.run == r))
+        for f in range(len(evidence.names))
+        for r in range(len(evidence.runs))
+    ]
     largest = 0.0
     for _ in range(DECOYS):
         shifted = np.empty_like(C)
@@ -185,7 +190,11 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
 
 
 def put_on_trial(
-    base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis], residuals: Sequence[Array], reference: float,
+    base: BaseFit,
+    held: BaseFit,
+    hypotheses: Sequence[Hypothesis],
+    residuals: Sequence[Array],
+    reference: float,
     first: bool,
 ) -> list[Trial]:
     """Trials of refined hypotheses with their held-out residuals, best score first; `reference`: the base's score."""
@@ -195,11 +204,18 @@ def put_on_trial(
     for h, r in zip(hypotheses, residuals, strict=True):
         found.append(
             Trial(
-                h, r, gains(held.evidence, held.residual, r), advantage(held.evidence, held.residual, r)[1],
-                magnitude(h), stable(base, h), explained(held.evidence, held.residual, r), first, decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
-                h.likelihood + log_likelihood(held.evidence, r) - reference,
+                hypothesis=h,
+                held=r,
+                gain=gains(held.evidence, held.residual, r),
+                z=advantage(held.evidence, held.residual, r)[1],
+                size=magnitude(h),
+                stable=stable(base, h),
+                share=explained(held.evidence, held.residual, r),
+                first=first,
+                decoy=decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
+                score=h.likelihood + log_likelihood(held.evidence, r) - reference,
             )
-        )  # fmt: skip
+        )
     return sorted(found, key=lambda trial: -trial.score)
 
 
@@ -209,10 +225,12 @@ def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -
     for other in others:
         if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
             continue
-        z = pooled_advantage([
-            (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
-            (held.evidence, other.held, best.held),
-        ])
+        z = pooled_advantage(
+            [
+                (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
+                (held.evidence, other.held, best.held),
+            ]
+        )
         if z < TIED:
             found.append(other)
     return found
