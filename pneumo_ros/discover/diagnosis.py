@@ -129,6 +129,7 @@ def _latest(steps: Sequence[Step]) -> list[Trial]:
     """Each candidate's trial in the last round it was tried in; what was added comes first."""
     added = [step.added for step in steps if step.added]
     seen = {trial.name: trial for step in steps for trial in step.trials}
+    seen |= {trial.name: trial for step in steps for trial in step.rivals}  # of the round in which they tied
     names = [trial.name for trial in added]
     return [*added, *sorted((t for n, t in seen.items() if n not in names), key=lambda trial: -trial.hypothesis.t)]
 
@@ -155,9 +156,10 @@ def remains(before: Comparison, after: Comparison) -> Unexplained | None:
     for name, equation in after.equations.items():
         if equation.explained_by_noise is False and excess(equation) > most:
             worst, most = name, excess(equation)
-    if worst is None or not after.dependences.get(worst):
+    shown = {n: d for n, d in after.dependences.get(worst or "", {}).items() if len(d.bins.centre)}
+    if worst is None or not shown:
         return None
-    against, best = max(after.dependences[worst].items(), key=lambda item: item[1].explained_share)
+    against, best = max(shown.items(), key=lambda item: item[1].explained_share)
     bins, equation = best.bins, after.equations[worst]
     return Unexplained(
         worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,

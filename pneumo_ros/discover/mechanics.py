@@ -28,6 +28,8 @@ _LAG = 0.025  # s
 
 def mechanical(model: Model) -> Model | None:
     """The model without valve and chambers, driven by a force; None where its mechanics need the pressures."""
+    if model.force_driven:
+        return model
     kept: list[str] = []
     for name in model.effects:
         try:
@@ -35,16 +37,16 @@ def mechanical(model: Model) -> Model | None:
                 [*kept, name], {}, library=model.library, frame=("piston", "air"), name=model.name, defaults=True
             )
         except PneumoError:
-            if _moves(model, name):
+            if moves(model, name):
                 return None
             continue
-        if _moves(model, name):
+        if moves(model, name):
             kept.append(name)
     values = {k: v for k, v in model.parameters.items() if k.partition(".")[0] in (*kept, "piston", "air")}
     return Model.build(kept, values, library=model.library, frame=("piston", "air"), name=model.name)
 
 
-def _moves(model: Model, name: str) -> bool:
+def moves(model: Model, name: str) -> bool:
     """Whether an effect acts on the piston or on what its position sensor shows."""
     mechanics = {
         "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_rise", "slip", "stribeck",

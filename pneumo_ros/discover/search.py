@@ -64,7 +64,7 @@ class Search:
     def run(self) -> Found:
         """Add effects one after another while they pass every test."""
         self.progress(0.05, "refitting what the model has")
-        base = self.refit(self.start)
+        base = self.polish(self.refit(self.start))
         model, steps = base, list[Step]()
         try:
             for k in range(MOST + 1):
@@ -124,6 +124,13 @@ class Search:
             base_fit(self.held, self.whole, model, names, centre, prior),
         )
 
+    def polish(self, model: Model) -> Model:
+        """Friction refitted to breakaways and reversals, which decide about predictions through them."""
+        from pneumo_ros.discover.diagnosis import deviations
+
+        made = slips(model, self.train.runs, self.held.runs)
+        return model if made is None else with_values_of(model, polished(*made, deviations(self, model)))
+
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
         from pneumo_ros.discover.diagnosis import deviations
@@ -133,7 +140,8 @@ class Search:
             return model, None
         alone, found = made
         known = deviations(self, model)
-        alone = polished(alone, found, known)
+        added = [name for name in model.effects if name not in self.start.effects]
+        alone = polished(alone, found, known, added)
         train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
         self.quality = (float(np.median(train)), float(np.median(held)))
         model = with_values_of(model, alone)

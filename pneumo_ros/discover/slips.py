@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
-from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical
+from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical, moves
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.identify.refit import refit_segments
@@ -30,6 +30,7 @@ POOR = 1.5  # median squared error per sample over the noise's: above, something
 BLIND = 10.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
 FEWEST = 12  # events
 FEW = 3  # parameters: the events are too few to fit more
+LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
 _TAIL = 4.0
 _SIZES = (0.3, 1.0, 2.5)
 
@@ -71,13 +72,17 @@ def errors(model: Model, segments: Segments) -> Array:
     return np.asarray(2.0 * total / size.shape[1])
 
 
-def polished(alone: Model, found: Slips, known: dict[str, float]) -> Model:
-    """The mechanics with their friction refitted to the training events.
+def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = ()) -> Model:
+    """The mechanics with their friction, and what was `added` to them, refitted to the training events.
 
     `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise.
     """
     names = [f"lugre_friction.{key}" for key in FREE]
     prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
+        if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
+            prior[name] = max(3.0 * known[name] if np.isfinite(known[name]) else 0.0, LOOSE * abs(alone[name]))
+            names.append(name)
     new = refit_segments(alone, found.train(alone), names, prior).model
     before, after = (float(np.median(errors(m, found.train(m)))) for m in (alone, new))
     return new if after < before else alone
@@ -134,7 +139,11 @@ def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
     for h in screened:
         spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
         seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
-    return [name for name, t in seen.items() if name in builds and len(builds[name]) <= FEW and t < BLIND]
+    return [
+        name
+        for name, t in seen.items()
+        if name in builds and moves(alone, name) and len(builds[name]) <= FEW and t < BLIND
+    ]
 
 
 def share_removed(before: Array, after: Array) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.discover.coordinates import Coordinate
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, cluster_robust, family_scales, huber, weights
 from pneumo_ros.discover.ranking import wald
@@ -22,6 +23,7 @@ MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
 DECOYS = 12
+NOISE = {"breakaway": 0.25}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
 
 @dataclass(frozen=True)
@@ -71,9 +73,18 @@ class Trial:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         if self.size < MATERIAL:
             found.append(f"its size is {self.size:.2g} of the usual one")
+        ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if not c.is_size and _at_end(c, float(u))]
+        if ends:
+            found.append(f"{ends[0]} is at the end of its range")
         if not self.stable:
             found.append("its size depends on which run is left out")
         return tuple(found)
+
+
+def _at_end(c: Coordinate, u: float) -> bool:
+    """Whether a shape sits on a bound, as one does that stands for something else."""
+    value = c.value(u)
+    return c.logarithmic and (value >= c.high * 0.999 or value <= c.low * 1.001)
 
 
 def equation_of(name: str) -> str:
@@ -82,13 +93,13 @@ def equation_of(name: str) -> str:
 
 
 def mean_squares(evidence: Evidence, residual: Array) -> dict[str, float]:
-    """Robust mean square of the residual over noise by equation, the mean over its families."""
+    """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's."""
     scale = family_scales(evidence, residual)
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
         if (evidence.family == k).any():
             found.setdefault(equation_of(name), []).append(float(scale[k] ** 2))
-    return {name: float(np.mean(values)) for name, values in found.items()}
+    return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
 
 
 def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
@@ -100,8 +111,8 @@ def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
 def explained(evidence: Evidence, before: Array, after: Array) -> float:
     """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
     first, second = mean_squares(evidence, before), mean_squares(evidence, after)
-    noise = dict.fromkeys(first, 1.0) | {"breakaway": 0.2**2}
-    return max((first[n] - max(second[n], noise[n])) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+    noise = {name: NOISE.get(name, 1.0) for name in first}
+    return max((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
 
 
 def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
