@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pneumo_ros.report.markup import Html
 
 Array = NDArray[np.float64]
-Kind = Literal["line", "steps", "dots", "band", "area", "spans"]
+Kind = Literal["line", "steps", "dots", "band", "area", "spans", "bars", "removed", "labels"]
 # What a trace is; each role has its colour, in light and in dark
 Role = Literal["measured", "model", "error", "free", "noise", "first", "second", "third", "quiet"]
 
@@ -19,9 +19,10 @@ Role = Literal["measured", "model", "error", "free", "noise", "first", "second",
 class Trace:
     """One curve: x and y (n,), in the units of the axes; a band also has its upper edge, `y_high` (n,).
 
-    NaN breaks a line; an area reaches down to zero; spans are thick horizontal lines. A trace with a `resolution` [unit
-    of y] is long: it is stored that finely, and thinned to what the screen can show at every zoom. Traces that start
-    hidden are shown by a click on their name.
+    NaN breaks a line; an area reaches down to zero; spans are thick horizontal lines, bars thicker ones, and what was
+    removed a pale bar; labels are `texts` right of their points. A trace with a `resolution` [unit of y] is long: it is
+    stored that finely, and thinned to what the screen can show at every zoom. Traces that start hidden are shown by a
+    click on their name.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Trace:
     y_high: Array | None = None
     hidden: bool = False
     resolution: float = 0.0
+    texts: tuple[str, ...] = ()  # of labels
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,15 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Badge:
+    """The verdict in a word, with a sign and a tone of its own, so that neither colour nor letters have to be read."""
+
+    sign: str
+    word: str
+    tone: Literal["good", "found", "unknown"]
+
+
+@dataclass(frozen=True)
 class Report:
     """A page: title, its one-sentence answer, sections, and the JSON of the verb."""
 
@@ -99,6 +110,7 @@ class Report:
     good: bool
     sections: tuple[Section, ...]
     result: dict[str, object]
+    badge: Badge | None = None
 
     def charts(self) -> list[Chart | HeatMap]:
         """Every figure of the page, in order."""

@@ -27,16 +27,23 @@ def comparison_report(
         verdict=verdict(result),
         good=all(one.level != "bad" for one in findings(result)),
         sections=(
-            overview_section(result),
-            findings_section(result),
-            runs_section(result, comparison, thinning(comparison)),
-            equations_section(result),
-            regimes_section(result),
-            *friction_section(result),
+            *comparison_sections(result, comparison),
             machine_section(model, result.get("refit")),
             origin_section(origin),
         ),
         result=result | {"provenance": origin},
+    )
+
+
+def comparison_sections(result: dict[str, Any], comparison: "Comparison") -> tuple[Section, ...]:
+    """Heat map first, then what fails, runs, equations, regimes and friction: of any model on any runs."""
+    return (
+        overview_section(result),
+        findings_section(result),
+        runs_section(result, comparison, thinning(comparison)),
+        equations_section(result),
+        regimes_section(result),
+        *friction_section(result),
     )
 
 

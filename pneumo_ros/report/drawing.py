@@ -21,6 +21,8 @@ _COLOURS = {
 _DPI = 150
 _INCH = 100.0  # pixels of the page
 _WIDTH = 9.0  # inches
+_NAMELESS = ("band", "area", "spans", "labels")  # kinds that the legend leaves out
+_THICK = {"spans": 6.0, "bars": 11.0, "removed": 11.0}
 
 
 def draw_charts(
@@ -83,7 +85,7 @@ def _panel(axes: "Axes", panel: Panel) -> None:
     for trace in panel.traces:
         if trace.hidden:
             continue
-        label = trace.name if trace.name not in named and trace.kind not in ("band", "area", "spans") else None
+        label = trace.name if trace.name not in named and trace.kind not in _NAMELESS else None
         named.add(trace.name)
         _trace(axes, trace, label)
     if panel.ticks:
@@ -97,13 +99,17 @@ def _trace(axes: "Axes", trace: Trace, label: str | None) -> None:
         axes.fill_between(trace.x, trace.y, _upper(trace), color=colour, alpha=0.18, linewidth=0.0)
     elif trace.kind == "area":
         axes.fill_between(trace.x, trace.y, color=colour, alpha=0.6, linewidth=0.5)
+    elif trace.kind == "labels":
+        for x, y, text in zip(trace.x, trace.y, trace.texts, strict=True):
+            axes.annotate(text, (x, y), (4.0, 0.0), textcoords="offset points", va="center", fontsize="small")
     elif trace.kind == "dots":
         axes.plot(trace.x, trace.y, "o", color=colour, markersize=3.5, label=label)
     else:
-        dotted = ":" if trace.role == "noise" else "-"
-        width = {"spans": 6.0}.get(trace.kind, {"measured": 2.2, "noise": 0.8}.get(trace.role, 1.0))
+        dotted = ":" if trace.role == "noise" and trace.kind not in _THICK else "-"
+        width = _THICK.get(trace.kind, {"measured": 2.2, "noise": 0.8}.get(trace.role, 1.0))
         style = "steps-post" if trace.kind == "steps" else "default"
-        axes.plot(trace.x, trace.y, dotted, color=colour, linewidth=width, label=label, drawstyle=style,
+        alpha = 0.25 if trace.kind == "removed" else None
+        axes.plot(trace.x, trace.y, dotted, color=colour, linewidth=width, label=label, drawstyle=style, alpha=alpha,
                   solid_capstyle="butt", rasterized=len(trace.x) > 20000)  # fmt: skip
 
 

@@ -48,7 +48,7 @@ def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
         np.array([np.nan if v is None else v for v in found[key]], dtype=float)
         for key in ("at", "mean", "low", "high", "noise", "seconds", "from", "to")
     )
-    x, mean, low, high, noise = _broken(x_factor * begin, x_factor * end, x_factor * at, mean, low, high, noise)
+    x, mean, low, high, noise = broken(x_factor * begin, x_factor * end, x_factor * at, mean, low, high, noise)
     traces = (
         Trace("95 % of the mean", "first", "band", x, factor * low, factor * high),
         Trace("mean residual", "first", "line", x, factor * mean),
@@ -57,7 +57,7 @@ def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
     )
     panels = (
         Panel(f"residual [{unit}]", traces, share=2.4),
-        Panel("seconds", (_coverage(x_factor * begin, x_factor * end, seconds),)),
+        Panel("seconds", (coverage(x_factor * begin, x_factor * end, seconds),)),
     )
     share = f"{words.capitalize()} explains {percent(found['explained_share'])} of the squared residual."
     return Chart(
@@ -65,14 +65,14 @@ def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
     )
 
 
-def _broken(begin: Array, end: Array, x: Array, *columns: Array) -> list[Array]:
+def broken(begin: Array, end: Array, x: Array, *columns: Array) -> list[Array]:
     """x and the columns with a NaN between bins that do not touch: nothing is known there."""
     apart = np.flatnonzero(begin[1:] > end[:-1] + 1e-9 * np.ptp(x)) + 1 if len(x) else np.empty(0, dtype=np.int64)
     middle = 0.5 * (end[apart - 1] + begin[apart])
     return [np.insert(x, apart, middle), *(np.insert(column, apart, np.nan) for column in columns)]
 
 
-def _coverage(begin: Array, end: Array, seconds: Array) -> Trace:
+def coverage(begin: Array, end: Array, seconds: Array) -> Trace:
     """A block over every bin, nothing where none is."""
     x = np.stack([begin, begin, end, end], axis=1).ravel()
     y = np.stack([0.0 * seconds, seconds, seconds, 0.0 * seconds], axis=1).ravel()

@@ -59,11 +59,21 @@ def _header(report: Report) -> Html:
         "header",
         tag("p", "pneumo_ros", class_="brand"),
         tag("h1", report.title),
-        tag("p", report.verdict, class_=f"verdict {'good' if report.good else 'bad'}"),
+        _verdict(report),
         tag("nav", tag("ul", links), aria_label="Sections"),
         tag("noscript", tag("p", "The plots need JavaScript; tables and numbers do not.", class_="warning")),
         tag("p", class_="warning", id="trouble", hidden=True, role="alert"),
     )
+
+
+def _verdict(report: Report) -> Html:
+    """The one sentence; with a badge, large, sign and word before it."""
+    badge = report.badge
+    if badge is None:
+        return tag("p", report.verdict, class_=f"verdict {'good' if report.good else 'bad'}")
+    sign = tag("span", badge.sign, class_="sign", aria_hidden="true")
+    words = tag("span", tag("strong", badge.word, class_="badge"), " ", report.verdict)
+    return tag("p", sign, words, class_=f"verdict large {badge.tone}")
 
 
 def section_html(section: Section, level: int = 2) -> Html:
@@ -110,7 +120,7 @@ def _trace(trace: Trace) -> dict[str, Any]:
     found: dict[str, Any] = {"name": trace.name, "role": trace.role, "kind": trace.kind, "hidden": trace.hidden}
     if trace.resolution > 0.0:
         return found | {"series": encode(trace.x, trace.y, trace.resolution)}
-    found |= {"x": _numbers(trace.x), "y": _numbers(trace.y)}
+    found |= {"x": _numbers(trace.x), "y": _numbers(trace.y)} | ({"texts": trace.texts} if trace.texts else {})
     return found | ({"high": _numbers(trace.y_high)} if trace.y_high is not None else {})
 
 

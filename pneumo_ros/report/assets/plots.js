@@ -32,6 +32,14 @@ const Plots = (() => {
     if (trace.kind === "steps") shown.line.shape = "hv";
     if (trace.kind === "dots") Object.assign(shown, { mode: "markers", marker: { color: ink, size: 6 } });
     if (trace.kind === "spans") shown.line.width = 7;
+    if (trace.kind === "bars" || trace.kind === "removed") {
+      Object.assign(shown.line, { width: 18, dash: "solid", color: trace.kind === "bars" ? ink : colour(`${trace.role}-band`) });
+      shown.hoverinfo = "skip"; // labels say it
+    }
+    if (trace.kind === "labels") {
+      Object.assign(shown, { mode: "text", text: trace.texts.map((text) => `\u00a0${text}`), textposition: "middle right", cliponaxis: false, showlegend: false, hoverinfo: "skip" });
+      shown.textfont = { color: colour("ink") };
+    }
     if (trace.kind === "area") Object.assign(shown, { fill: "tozeroy", line: { color: ink, width: 1 } });
     if (trace.kind === "band") {
       Object.assign(shown, { fill: "toself", fillcolor: colour(`${trace.role}-band`), hoverinfo: "skip" });
@@ -61,24 +69,36 @@ const Plots = (() => {
     return found;
   }
 
+  // Plain numbers at 1, 2 and 5, or at the decades where there are many.
+  function plainTicks([low, high]) {
+    const found = [];
+    for (let decade = Math.floor(Math.log10(low)); decade <= Math.log10(high); decade++) {
+      for (const step of Math.log10(high / low) > 2.5 ? [1] : [1, 2, 5]) found.push(step * 10 ** decade);
+    }
+    return { tickmode: "array", tickvals: found, ticktext: found.map((value) => String(Number(value.toPrecision(1)))) };
+  }
+
   function layout(chart, range, width) {
     const ink = colour("ink");
     const axis = { gridcolor: colour("grid"), zerolinecolor: colour("axis"), linecolor: colour("axis") };
     const names = chart.panels.flatMap((panel) => panel.ticks).map((name) => name.length);
     const left = Math.max(68, 7 * Math.max(0, ...names) + 12, chart.link && width > 700 ? 118 : 0);
+    const rows = chart.panels.every((panel) => panel.ticks.length);
+    const whole = chart.span && chart.logX ? chart.span.map(Math.log10) : chart.span; // a logarithmic axis is ranged in decades
     const total = chart.panels.reduce((sum, panel) => sum + panel.share, 0);
     const gap = chart.panels.length > 1 ? 0.05 : 0;
     const result = {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: width < 500 ? 11 : 12 },
-      margin: { l: left, r: 12, t: chart.legend ? 28 : 10, b: 44 }, hovermode: "x", dragmode: coarse.matches ? false : "zoom",
+      margin: { l: left, r: 12, t: chart.legend ? 28 : 10, b: 44 }, hovermode: rows ? "closest" : "x", dragmode: coarse.matches ? false : "zoom",
       legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", bgcolor: "rgba(0,0,0,0)" },
       modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("axis"), activecolor: colour("accent") },
       hoverlabel: { bgcolor: colour("card"), bordercolor: colour("axis"), font: { color: ink } },
       xaxis: {
         ...axis, title: { text: chart.x, standoff: 8 }, hoverformat: chart.link ? ".3f" : ".4~g", type: chart.logX ? "log" : "linear", anchor: chart.panels.length > 1 ? `y${chart.panels.length}` : "y",
-        zeroline: false, ...(range || chart.span ? { range: [...(range || chart.span)], autorange: false } : { autorange: true }),
+        zeroline: false, ...(range || whole ? { range: [...(range || whole)], autorange: false } : { autorange: true }),
       },
     };
+    if (rows && chart.logX) Object.assign(result.xaxis, plainTicks(chart.span));
     let top = 1;
     chart.panels.forEach((panel, k) => {
       const height = ((1 - gap * (chart.panels.length - 1)) * panel.share) / total;

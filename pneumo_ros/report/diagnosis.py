@@ -1,0 +1,52 @@
+"""The report of `pneumo diagnose`: what is missing, with its evidence, and the final model on the held-out runs."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.discover.outcome import UNKNOWN
+from pneumo_ros.report.answer import answer_section, badge, verdict_sentence
+from pneumo_ros.report.candidates import candidates_section
+from pneumo_ros.report.chart import Report, Section
+from pneumo_ros.report.comparison import comparison_sections
+from pneumo_ros.report.machine import machine_section
+from pneumo_ros.report.origin import origin_section
+from pneumo_ros.report.residuals import remains_section, residuals_section
+from pneumo_ros.report.waterfall import waterfall_section
+
+if TYPE_CHECKING:
+    from pneumo_ros.discover.outcome import Outcome
+
+
+def diagnosis_report(
+    outcome: "Outcome", result: dict[str, Any], compared: dict[str, Any], origin: dict[str, Any], experiment: str = ""
+) -> Report:
+    """Everything a diagnosis has to show.
+
+    result: the JSON of the verb, which the page holds; compared: the JSON of `outcome.after`; both of plain types.
+    origin: what `provenance` returns, with the command line that repeats the diagnosis; experiment: what to record
+    next, in a sentence.
+    """
+    runs = len(outcome.train) + len(outcome.held)
+    return Report(
+        title=f"What '{outcome.model.name}' lacks, from {runs} recordings",
+        verdict=verdict_sentence(outcome),
+        good=outcome.verdict != UNKNOWN,
+        badge=badge(outcome),
+        sections=(
+            answer_section(outcome, origin),
+            waterfall_section(outcome),
+            candidates_section(outcome),
+            residuals_section(outcome),
+            remains_section(outcome, experiment),
+            *_final(outcome, compared),
+            machine_section(outcome.model, None),
+            origin_section(origin),
+        ),
+        result=result | {"provenance": origin},
+    )
+
+
+def _final(outcome: "Outcome", compared: dict[str, Any]) -> tuple[Section, ...]:
+    """The page of `compare` for the final model on the held-out runs, under a name that says so."""
+    first, *others = comparison_sections(compared, outcome.after)
+    return replace(first, title="Final model on the held-out recordings"), *others

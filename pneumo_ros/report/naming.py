@@ -1,0 +1,52 @@
+"""How a diagnosis is worded: names of effects and equations, lists of them, numbers with their uncertainty."""
+
+import math
+from collections.abc import Sequence
+
+from pneumo_ros.diagnose.wording import EQUATIONS, number
+
+NORMAL = 1.96  # deviations that hold 95 %
+
+
+def effect_words(name: str) -> str:
+    """`viscous_friction` as people say it."""
+    return name.replace("_", " ")
+
+
+def equation_words(name: str) -> str:
+    """`chamber_a` as people say it; also what a diagnosis judges besides equations: breakaway, valve, sensor."""
+    return EQUATIONS[name][0] if name in EQUATIONS else name.replace("_", " ")
+
+
+def listed(words: Sequence[str], last: str = "and") -> str:
+    """'a', 'a and b', 'a, b and c'."""
+    *first, end = words or ("nothing",)
+    return f"{', '.join(first)} {last} {end}" if first else end
+
+
+def sentence(text: str) -> str:
+    """With a capital letter, the rest as it is."""
+    return text[:1].upper() + text[1:]
+
+
+def resolved(value: float, std: float) -> str:
+    """A value with as many digits as its standard deviation leaves it, the last one uncertain."""
+    if not (math.isfinite(std) and std > 0.0) or value == 0.0:
+        return number(value)
+    return number(value, min(max(math.ceil(math.log10(abs(value) / std)) + 1, 2), 7))
+
+
+def interval(value: float, std: float) -> str:
+    """The 95 % interval of a value, or that there is none."""
+    if not math.isfinite(std):
+        return "not determined by these recordings"
+    low, high = value - NORMAL * std, value + NORMAL * std
+    return f"{resolved(low, std)} to {resolved(high, std)}"
+
+
+def change(before: float, after: float) -> str:
+    """What became of an error: '-93 %', '+4 %', or 'no change' below one per cent."""
+    share = after / before - 1.0 if before > 0.0 else math.nan
+    if not math.isfinite(share):
+        return ""
+    return "no change" if abs(share) < 0.01 else f"{100.0 * share:+.0f} %".replace("-", "\N{MINUS SIGN}")
