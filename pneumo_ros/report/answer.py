@@ -6,7 +6,8 @@ from pneumo_ros.diagnose.wording import VARIABLES, amount, times
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN
 from pneumo_ros.report.chart import Badge, Section
 from pneumo_ros.report.markup import Content, Html, table, tag
-from pneumo_ros.report.naming import effect_words, equation_words, interval, listed, resolved
+from pneumo_ros.report.naming import effect_words, interval, listed, resolved, the
+from pneumo_ros.report.residuals import FOLLOWS
 
 if TYPE_CHECKING:
     from pneumo_ros.discover.outcome import Addition, Outcome
@@ -20,7 +21,8 @@ def badge(outcome: "Outcome") -> Badge:
     if outcome.verdict == ADEQUATE:
         return Badge("\N{CHECK MARK}", "Adequate", "good")
     if outcome.verdict == FOUND:
-        return Badge("+", "Effect found" if len(outcome.added) == 1 else f"{len(outcome.added)} effects found", "found")
+        word = "Effect found" if len(outcome.added) == 1 else f"{len(outcome.added)} effects found"
+        return Badge("+", f"{word}, more remains" if outcome.unexplained else word, "found")
     return Badge("?", "Unknown effect", "unknown")
 
 
@@ -44,17 +46,17 @@ def _remaining(outcome: "Outcome") -> str:
     assert left is not None
     ratio = outcome.after.equations[left.equation].ratio_to_noise
     what = f"{amount(left.rms, left.equation)} rms, {times(ratio)} the noise"
-    begin = "Beside it, s" if outcome.added else "S"
+    beside = {0: "S", 1: "Beside it, s"}.get(len(outcome.added), "Beside them, s")
     return (
-        f"{begin}omething that no effect of the catalogue explains is at work in the "
-        f"{equation_words(left.equation)}: {what}{follows(outcome)}."
+        f"{beside}omething that no effect of the catalogue explains is at work in {the(left.equation)}: "
+        f"{what}{follows(outcome)}."
     )
 
 
 def follows(outcome: "Outcome") -> str:
     """', following position' where a variable explains a share worth naming."""
     left = outcome.unexplained
-    if left is None or left.share < 0.1:
+    if left is None or left.share < FOLLOWS:
         return ""
     return f", following {VARIABLES[left.against][0]}"
 
@@ -68,7 +70,7 @@ def _fall(outcome: "Outcome") -> str:
     before, after = (one.equations[worst].ratio_to_noise for one in (outcome.before, outcome.after))
     with_it = "With it" if len(outcome.added) == 1 else "With them"
     return (
-        f"{with_it}, the {equation_words(worst)} residual on recordings that were never fitted falls from "
+        f"{with_it}, the residual of {the(worst)} on recordings that were never fitted falls from "
         f"{times(before)} to {times(after)} the noise."
     )
 
@@ -86,7 +88,7 @@ def notes(outcome: "Outcome") -> list[str]:
     if outcome.interrupted:
         found.append("The search was interrupted: this is what it had found by then.")
     if outcome.failing:
-        names = listed([equation_words(name) for name in outcome.failing])
+        names = listed([the(name) for name in outcome.failing])
         found.append(f"After the refit alone, this fails: {names}.")
     else:
         found.append("After the refit alone, no equation fails: what the model has is enough.")
@@ -106,13 +108,15 @@ def notes(outcome: "Outcome") -> list[str]:
 def _addition(one: "Addition", model: "Model") -> Section:
     """An added effect: how it shows, its parameters with intervals, its rivals."""
     effect = model.library.find(one.effect)
-    rows: list[tuple[Content, ...]] = [
-        (model.specification(f"{one.effect}.{key}").meaning, tag("code", f"{one.effect}.{key}"),
-         tag("strong", resolved(value.value, value.std)), interval(value.value, value.std), value.unit)
-        for key, value in one.parameters.items()
-    ]  # fmt: skip
-    known = {"Shows as": effect.signature, "Source": effect.source}
-    parts = [tag("p", " ".join(f"{word}: {text}." for word, text in known.items() if text), class_="soft")]
+    rows: list[tuple[Content, ...]] = []
+    for key, value in one.parameters.items():
+        dotted = f"{one.effect}.{key}"
+        known = model.specification(dotted)
+        span = interval(value.value, value.std, known.low, known.high)
+        number = tag("strong", resolved(value.value, value.std))
+        rows.append((known.meaning, tag("code", dotted), number, span, value.unit))
+    hints = {"Shows as": effect.signature, "Source": effect.source}
+    parts = [tag("p", " ".join(f"{word}: {text}." for word, text in hints.items() if text), class_="soft")]
     if rows:
         head = ("parameter", "in the machine file", "value", "95 % interval", "unit")
         parts.append(table(head, rows, f"Parameters of {effect_words(one.effect)}", numeric=(2,)))

@@ -10,7 +10,8 @@ from pneumo_ros.report.chart import Report, Section
 from pneumo_ros.report.comparison import comparison_sections
 from pneumo_ros.report.machine import machine_section
 from pneumo_ros.report.origin import origin_section
-from pneumo_ros.report.residuals import remains_section, residuals_section
+from pneumo_ros.report.remains import remains_section
+from pneumo_ros.report.residuals import residuals_section
 from pneumo_ros.report.waterfall import waterfall_section
 
 if TYPE_CHECKING:

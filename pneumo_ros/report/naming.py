@@ -18,6 +18,12 @@ def equation_words(name: str) -> str:
     return EQUATIONS[name][0] if name in EQUATIONS else name.replace("_", " ")
 
 
+def the(equation: str) -> str:
+    """`equation_words` within a sentence: 'the momentum', 'chamber a'."""
+    words = equation_words(equation)
+    return words if words.startswith("chamber") else f"the {words}"
+
+
 def listed(words: Sequence[str], last: str = "and") -> str:
     """'a', 'a and b', 'a, b and c'."""
     *first, end = words or ("nothing",)
@@ -36,17 +42,21 @@ def resolved(value: float, std: float) -> str:
     return number(value, min(max(math.ceil(math.log10(abs(value) / std)) + 1, 2), 7))
 
 
-def interval(value: float, std: float) -> str:
-    """The 95 % interval of a value, or that there is none."""
+def interval(value: float, std: float, least: float = -math.inf, most: float = math.inf) -> str:
+    """The 95 % interval of a value within what is allowed, or that there is none."""
     if not math.isfinite(std):
         return "not determined by these recordings"
-    low, high = value - NORMAL * std, value + NORMAL * std
+    low, high = max(value - NORMAL * std, least), min(value + NORMAL * std, most)
     return f"{resolved(low, std)} to {resolved(high, std)}"
 
 
 def change(before: float, after: float) -> str:
-    """What became of an error: '-93 %', '+4 %', or 'no change' below one per cent."""
-    share = after / before - 1.0 if before > 0.0 else math.nan
-    if not math.isfinite(share):
+    """What became of an error: '-93 %', '+4 %', '2.5 times as much', or 'no change' below one per cent."""
+    ratio = after / before if before > 0.0 else math.nan
+    if not math.isfinite(ratio):
         return ""
-    return "no change" if abs(share) < 0.01 else f"{100.0 * share:+.0f} %".replace("-", "\N{MINUS SIGN}")
+    if ratio >= 2.0:
+        return f"{number(ratio, 2)} times as much"
+    if abs(ratio - 1.0) < 0.01:
+        return "no change"
+    return f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", "\N{MINUS SIGN}")

@@ -27,9 +27,9 @@ def waterfall_section(outcome: "Outcome") -> Section:
         "root mean square of the error over all signals and recordings, in sensor noise. None of these recordings was "
         "fitted. 1 x is the noise floor: nothing can fall below it."
     )
-    signals = Section("waterfall-signals", "Signal by signal", _signals(outcome))
+    signals = Section("held-out-signals", "Signal by signal", _signals(outcome))
     body = tag("p", text, class_="soft")
-    return Section("waterfall", "Held-out error", body, charts=(_chart(outcome.course),), parts=(signals,))
+    return Section("held-out", "Held-out error", body, charts=(_chart(outcome.course),), parts=(signals,))
 
 
 def _chart(course: Sequence[tuple[str, float]]) -> Chart:
