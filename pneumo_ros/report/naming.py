@@ -36,10 +36,13 @@ def sentence(text: str) -> str:
 
 
 def resolved(value: float, std: float) -> str:
-    """A value with as many digits as its standard deviation leaves it, the last one uncertain."""
-    if not (math.isfinite(std) and std > 0.0) or value == 0.0:
+    """A value to the decimal that its standard deviation leaves certain; an interval's ends get as many decimals."""
+    if not (math.isfinite(std) and std > 0.0):
         return number(value)
-    return number(value, min(max(math.ceil(math.log10(abs(value) / std)) + 1, 2), 7))
+    decimals = max(-math.floor(math.log10(std / 2.0)), 0)
+    if decimals <= 6:
+        return f"{value:.{decimals}f}"
+    return number(value, max(math.ceil(math.log10(max(abs(value) / std, 1.0))) + 1, 2))
 
 
 def interval(value: float, std: float, least: float = -math.inf, most: float = math.inf) -> str:
