@@ -90,39 +90,56 @@ def columns(rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> str:
 
 
 class Progress:
-    """Call it with the fraction done, 0 to 1. On a terminal it is one moving line; elsewhere one line per 10 %."""
+    """Call it with the fraction done, 0 to 1, and what is being done.
+
+    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both tell how long it may still take.
+    """
 
     WAIT = 0.5  # s; work that ends sooner shows nothing
+    GUESS = 3.0  # s of work before the rest is estimated
 
     def __init__(self, title: str, stream: TextIO | None) -> None:
         self.title, self.stream = title, stream
         self.moving = stream is not None and stream.isatty()
-        self._start, self._shown, self._drawn = time.monotonic(), 0, 0.0
+        self._start, self._shown, self._drawn, self._doing = time.monotonic(), 0, 0.0, ""
 
     def __enter__(self) -> "Progress":
         return self
 
     def __exit__(self, *failure: object) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Take the moving line away, so that something else can be said."""
         if self.stream is not None and self.moving and self._drawn:
             self.stream.write("\r\x1b[K")
             self.stream.flush()
 
-    def __call__(self, fraction: float) -> None:
+    def __call__(self, fraction: float, doing: str = "") -> None:
         now = time.monotonic()
         if self.stream is None or now - self._start < self.WAIT:
             return
-        percent = int(100 * min(max(fraction, 0.0), 1.0))
+        share = min(max(fraction, 0.0), 1.0)
+        percent = int(100 * share)
+        said = self._left(share, now) + (f": {doing}" if doing else "")
         if self.moving:
-            self._draw(percent, now)
-        elif percent // 10 > self._shown and (self._shown or percent < 100):
-            self._shown = percent // 10
-            print(f"{self.title}: {10 * self._shown} %", file=self.stream, flush=True)
+            self._draw(percent, now, said)
+        elif (percent // 10 > self._shown and (self._shown or percent < 100)) or doing != self._doing:
+            self._shown, self._doing = percent // 10, doing
+            print(f"{self.title}: {percent if doing else 10 * self._shown} %{said}", file=self.stream, flush=True)
 
-    def _draw(self, percent: int, now: float) -> None:
+    def _left(self, share: float, now: float) -> str:
+        """', about 20 s left', once enough is done to tell."""
+        passed = now - self._start
+        if passed < self.GUESS or not 0.02 < share < 1.0:
+            return ""
+        seconds = passed * (1.0 - share) / share
+        return f", about {seconds:.0f} s left" if seconds < 100.0 else f", about {seconds / 60.0:.0f} min left"
+
+    def _draw(self, percent: int, now: float, said: str) -> None:
         if self.stream is None or now - self._drawn < 0.1:
             return
         self._drawn = now
-        self.stream.write(
-            f"\r{self.title} [{'#' * (percent // 4):<25}] {percent:3d} % {now - self._start:4.0f} s\x1b[K"
-        )
+        line = f"{self.title} [{'#' * (percent // 4):<25}] {percent:3d} % {now - self._start:4.0f} s{said}"
+        self.stream.write(f"\r{line[: shutil.get_terminal_size().columns - 1]}\x1b[K")
         self.stream.flush()

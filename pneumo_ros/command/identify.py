@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.identified import text
+from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.recordings import expanded, read_expanded
 from pneumo_ros.command.reporting import add_report, prepare_report
-from pneumo_ros.errors import UsageError
-from pneumo_ros.files import check_writable
 
 if TYPE_CHECKING:
     from pneumo_ros.plant import Model
@@ -27,8 +26,7 @@ ADDABLE = {"viscous": "viscous_friction", "stribeck_exponent": "stribeck_shape"}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --out, what to fit besides, and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings, or folders of recordings")
-    parser.add_argument("--out", metavar="MODEL", help="write the identified machine file")
-    parser.add_argument("--overwrite", action="store_true", help="--out may replace a file")
+    add_machine_file(parser, "write the identified machine file")
     parser.add_argument("--viscous", action="store_true", help="add viscous friction and fit its coefficient sigma_2")
     parser.add_argument("--stribeck-exponent", action="store_true", help="add the exponent of the Stribeck curve")
     parser.add_argument(
@@ -49,7 +47,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.plant import save_model
     from pneumo_ros.report.identification import identification_report
 
-    _check_out(options)
+    check_machine_file(options)
     paths = expanded(options.bags, console)
     options.bags = list(paths)
     report = prepare_report(options)
@@ -68,15 +66,6 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.json(result)
     report.publish(console, lambda origin: identification_report(result, found.model, origin))
     return 1 if found.undetermined else 0
-
-
-def _check_out(options: argparse.Namespace) -> None:
-    if options.out is None:
-        if options.overwrite:
-            raise UsageError("--overwrite goes with --out MODEL")
-        return
-    if check_writable(options.out).exists() and not options.overwrite:
-        raise UsageError(f"{options.out} exists; name another file, or add --overwrite")
 
 
 def _with_added(model: "Model", options: argparse.Namespace) -> "Model":
