@@ -18,6 +18,8 @@ VERBS = (
     "simulate",
     "identify",
     "compare",
+    "diagnose",
+    "add",
     "effects",
     "experiment",
 )  # in the order help lists them; each is a module beside this one

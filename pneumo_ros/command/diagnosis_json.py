@@ -1,0 +1,119 @@
+"""The JSON of `pneumo diagnose`: the contract's keys, and beside them the evidence of every candidate."""
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.diagnose.moved import estimates_dict
+
+if TYPE_CHECKING:
+    from pneumo_ros.diagnose.compare import Comparison
+    from pneumo_ros.discover.outcome import Addition, Outcome, Ranked, Unexplained
+    from pneumo_ros.discover.trial import Trial
+    from pneumo_ros.identify.refit import Estimate
+    from pneumo_ros.plant import Model
+
+SCHEMA_VERSION = 1
+NORMAL = 1.96  # deviations of a 95 % interval
+KNOWN = 0.5  # of the deviation known before: a larger one says nothing
+
+
+def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", experiment: str) -> dict[str, Any]:
+    """Numbers, texts and arrays by the names programs rely on; keys are only ever added.
+
+    estimates: of all that is free in the final model; experiment: what to record next, "" for nothing.
+    """
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "model": outcome.model.name,
+        "verdict": outcome.verdict,
+        "interrupted": outcome.interrupted,
+        "failing": list(outcome.failing),
+        "added": [_added(one) for one in outcome.added],
+        "candidates": [_candidate(one, outcome) for one in outcome.ranking],
+        "holdout": {key: outcome.errors[key] for key in ("before", "after", "noise")},
+        "unexplained": None if outcome.unexplained is None else _unexplained(outcome.unexplained),
+        "suggested_experiment": experiment,
+        "horizon_s": outcome.after.horizon,
+        "course": [{"model": name, "holdout_error": error} for name, error in outcome.course],
+        "equations": {"before": equations_dict(outcome.before), "after": equations_dict(outcome.after)},
+        "refit": estimates_dict(outcome.model, estimates, outcome.train),
+        "train": list(outcome.train),
+        "held_out": list(outcome.held),
+        "rounds": len(outcome.steps),
+    }
+
+
+def value_dict(value: float, std: float, unit: str) -> dict[str, Any]:
+    """A parameter with its 95 % interval; what is infinite becomes null in JSON."""
+    return {"value": value, "std": std, "unit": unit, "low": value - NORMAL * std, "high": value + NORMAL * std}
+
+
+def equations_dict(comparison: "Comparison") -> dict[str, Any]:
+    """The verdict on each equation, over all runs."""
+    return {name: dict(vars(judged)) for name, judged in comparison.equations.items()}
+
+
+def _added(one: "Addition") -> dict[str, Any]:
+    return {
+        "effect": one.effect,
+        "parameters": {key: value_dict(v.value, v.std, v.unit) for key, v in one.parameters.items()},
+        "indistinguishable_from": list(one.indistinguishable_from),
+        "holdout_error_before": one.holdout_error_before,
+        "holdout_error_after": one.holdout_error_after,
+        "t": one.t,
+    }
+
+
+def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
+    """Evidence of the round in which the candidate was tried last."""
+    added = {addition.effect: addition for addition in outcome.added}
+    rivals = [name for name, addition in added.items() if one.effect in addition.indistinguishable_from]
+    predicted = added[one.effect].holdout_error_after if one.effect in added else one.holdout_error
+    return {
+        "effect": one.effect,
+        "score": one.score,
+        "holdout_error": predicted,
+        "t": one.score,
+        "holdout_gain": one.holdout_gain,
+        "equation": one.equation,
+        "size": one.size,
+        "added": one.effect in added,
+        "rival_of": rivals,
+        "objections": list(one.objections),
+        "parameters": _fitted(_trial(one, outcome), outcome.model),
+    }
+
+
+def _trial(one: "Ranked", outcome: "Outcome") -> "Trial":
+    """The trial that a row of the ranking tells of."""
+    trials = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
+    trials = trials or [trial for step in outcome.steps for trial in step.trials if trial.name == one.effect]
+    return trials[-1]
+
+
+def _fitted(trial: "Trial", model: "Model") -> dict[str, Any]:
+    """Parameters of a candidate as they were fitted when it was tried."""
+    h, specified = trial.hypothesis, model.library.find(trial.name).parameters
+    whole = len(h.covariance) == len(h.coordinates)
+    found = {}
+    for k, (c, u) in enumerate(zip(h.coordinates, h.u, strict=True)):
+        seen = whole and bool(h.slopes[:, k].any())
+        spread = math.sqrt(max(float(h.covariance[k, k]), 0.0)) if seen else math.inf
+        value, key = c.value(float(u)), c.name.partition(".")[2]
+        std = spread * (abs(value) if c.logarithmic else abs(c.scale)) if spread < KNOWN * c.prior else math.inf
+        found[key] = value_dict(value, std, specified[key].unit)
+    return found
+
+
+def _unexplained(left: "Unexplained") -> dict[str, Any]:
+    """Where bins are empty, nothing is drawn."""
+    rows = zip(left.at, left.mean, left.low, left.high, left.noise, left.seconds, strict=True)
+    kept = [tuple(map(float, row)) for row in rows if all(map(math.isfinite, row[:2]))]
+    at, mean, low, high, noise, seconds = (list(column) for column in zip(*kept, strict=True)) if kept else [[]] * 6
+    return {
+        "equation": left.equation, "against": left.against,
+        "shape": [[x, y] for x, y in zip(at, mean, strict=True)], "unit": left.unit,
+        "low": low, "high": high, "noise": noise, "seconds": seconds,
+        "residual_rms": left.rms, "explained_share": left.share,
+    }  # fmt: skip
