@@ -53,6 +53,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     paths = roles(options, console)
     report = prepare_report(options)
     model = chosen_model(options)
+    for name in untried(model):
+        console.note(f"{name} is not tried: none of its parameters says where it adds nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
     outcome, estimates = diagnosed(model, train, held, console)
     experiment = suggested(outcome, options.out or options.model, console)
@@ -67,6 +69,16 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if outcome.interrupted:
         return INTERRUPTED
     return 1 if outcome.verdict == "unknown_effect" else 0
+
+
+def untried(model: "Model") -> list[str]:
+    """Effects that are not of the catalogue and cannot be faded in."""
+    from pneumo_ros.discover.coordinates import coordinates
+    from pneumo_ros.plant.library import Library
+
+    library = model.library
+    own = sorted({*library.names()} - {*Library().names(), *model.effects})
+    return [name for name in own if not coordinates(library.find(name))]
 
 
 def diagnosed(

@@ -20,7 +20,7 @@ from pneumo_ros.discover.ranking import refine
 from pneumo_ros.discover.search import Search
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.breakaway import find_breakaways
-from pneumo_ros.identify.refit import SEGMENT, Estimate, Refit, refit_segments
+from pneumo_ros.identify.refit import SEGMENT, Estimate, Refit, default_free, refit_segments
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.segments import cut_at, side_by_side
 from pneumo_ros.plant import Model
@@ -101,7 +101,13 @@ def check_addable(model: Model, effects: Sequence[str]) -> None:
             raise UsageError(f"{name} is in '{model.name}' already; pneumo compare --refit fits what a model has")
         if list(effects).count(name) > 1:
             raise UsageError(f"{name} is named twice")
-    model.with_effects([*model.effects, *effects])
+    larger = model.with_effects([*model.effects, *effects])
+    for name in effects:
+        if not coordinates(model.library.find(name)) and any(n.startswith(f"{name}.") for n in default_free(larger)):
+            raise UsageError(
+                f"{name} cannot be fitted: none of its parameters says where it adds nothing, as "
+                "Parameter(..., neutral=0.0) does; put it into the machine file instead"
+            )
 
 
 def polish(
@@ -127,7 +133,7 @@ def polish(
 
 
 def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[Index]:
-    """Where segments of `samples` begin in each run: before breakaways, half of `most` at most, others spread evenly."""
+    """Where segments of `samples` begin in each run: before breakaways, at most half of `most`; the others anywhere."""
     slips = [_before_slips(model, run, samples) for run in runs]
     some = _thinned(slips, most // 2)
     rest = _thinned([side_by_side(run, samples) for run in runs], most - sum(map(len, some)))
