@@ -37,17 +37,17 @@ def _verdict(result: Mapping[str, Any]) -> str:
             f"'{model}' is adequate: with its parameters refitted, these recordings show nothing missing; "
             f"the held-out error is {times(error)} the noise floor."
         )
+    names = listed([_with_rivals(one) for one in result["added"]]) if result["added"] else ""
     if result["verdict"] == "unknown_effect":
+        besides = f"{names}, and besides " if names else ""
         why = f": {_equation(left['equation'])} leaves {_left(result)}" if left else ""
-        return f"'{model}' lacks something that no effect at hand explains{why}."
+        return f"'{model}' lacks {besides}something that no effect at hand explains{why}."
     before = result["added"][0]["holdout_error_before"]
     way = "falls" if error < before else "goes"
-    names = listed([_with_rivals(one) for one in result["added"]])
-    more = f" Something else remains in {_equation(left['equation'])}." if left else ""
     with_it = "with it" if len(result["added"]) == 1 else "with them"
     return (
         f"'{model}' lacks {names}: {with_it}, the held-out error {way} from {times(before)} to {times(error)} "
-        f"the noise floor.{more}"
+        "the noise floor."
     )
 
 
@@ -151,11 +151,12 @@ def remaining(result: Mapping[str, Any]) -> str:
     error = result["course"][-1]["holdout_error"]
     if result["unexplained"] is None:
         yet = (
-            f" Predictions over {result['horizon_s']:g} s are still {times(error)} the noise off, all the same: they "
+            f"\nPredictions over {result['horizon_s']:g} s are still {times(error)} the noise off, all the same: they "
             "hang on when the piston breaks away; see: pneumo compare"
         )
         return "Nothing of size remains unexplained in any equation." + (yet if error > ENOUGH else "")
-    return f"Unexplained: {_equation(result['unexplained']['equation'])} leaves {_left(result)}."
+    small = "" if result["unexplained"]["material"] else "; too little to be worth another effect"
+    return f"Unexplained: {_equation(result['unexplained']['equation'])} leaves {_left(result)}{small}."
 
 
 def _left(result: Mapping[str, Any]) -> str:

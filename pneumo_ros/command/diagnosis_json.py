@@ -115,5 +115,5 @@ def _unexplained(left: "Unexplained") -> dict[str, Any]:
         "equation": left.equation, "against": left.against,
         "shape": [[x, y] for x, y in zip(at, mean, strict=True)], "unit": left.unit,
         "low": low, "high": high, "noise": noise, "seconds": seconds,
-        "residual_rms": left.rms, "explained_share": left.share,
+        "residual_rms": left.rms, "explained_share": left.share, "material": left.material,
     }  # fmt: skip

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, compare
-from pneumo_ros.discover.basefit import slopes
+from pneumo_ros.discover.basefit import base_fit
 from pneumo_ros.discover.coordinates import coordinates, starts
 from pneumo_ros.discover.diagnosis import deviations
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything
+from pneumo_ros.discover.hypothesis import Hypothesis, everything
 from pneumo_ros.discover.ranking import refine
 from pneumo_ros.discover.search import Search
 from pneumo_ros.errors import UsageError
@@ -73,11 +73,15 @@ def add(
         raise UsageError("effects are fitted to recordings; give at least one")
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting what the model has")
-    search = Search(model, train, train[:1])
-    base = search.refit(model)
-    larger = base
-    for k, name in enumerate(effects):
-        tell(0.1 + 0.1 * k / len(effects), f"fitting {name}")
+    fading = [name for name in effects if coordinates(model.library.find(name))]
+    search = _search(model, fading, train)
+    base = larger = search.refit(model)
+    if len(fading) < len(effects):
+        plain = [name for name in effects if name not in fading]
+        search = _search(model.with_effects([*model.effects, *plain]), fading, train)
+        larger = search.refit(search.start)
+    for k, name in enumerate(fading):
+        tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
         larger = _with(search, larger, name)
     base = polish(search, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
     found = polish(search, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
@@ -156,18 +160,18 @@ def _thinned(each: Sequence[Index], most: int) -> list[Index]:
     return [every[kept][run[kept] == i] for i in range(len(each))]
 
 
+def _search(model: Model, effects: Sequence[str], train: Sequence[Run]) -> Search:
+    """A search that compiles no other effects than these."""
+    search = Search(model, train, train[:1])
+    search.whole = everything(model, {name: coordinates(model.library.find(name)) for name in effects})
+    return search
+
+
 def _with(search: Search, model: Model, name: str) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
-    own = coordinates(model.library.find(name))
-    if not own:
-        return search.refit(model.with_effects([*model.effects, name]))
     names, prior, centre = search.priors(model)
-    whole = everything(model, {name: own})
-    offset = np.array([(model[n] - centre[n]) / p for n, p in zip(names, prior, strict=True)])
-    fit = BaseFit(
-        model, whole, names, prior, offset, search.train, search.train.residual(model),
-        slopes(search.train, whole, names, prior, model),
-    )  # fmt: skip
+    fit = base_fit(search.train, search.whole, model, names, centre, prior)
+    own = coordinates(model.library.find(name))
     begin = [Hypothesis(name, own, u, np.zeros(len(names)), fit.residual) for u in starts(own)]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
     return search.refit(search.extended(model, best))

@@ -55,7 +55,9 @@ def test_the_json_is_as_promised(done: Done) -> None:
         "before": signals, "after": signals, "noise": signals,
     }  # fmt: skip
     (added,) = data["added"]
-    assert {"effect", "parameters", "indistinguishable_from", "holdout_error_before", "holdout_error_after"} <= set(added)
+    assert {"effect", "parameters", "indistinguishable_from", "holdout_error_before", "holdout_error_after"} <= set(
+        added
+    )
     assert {"value", "std", "unit"} <= set(added["parameters"]["coefficient"])
     assert added["parameters"]["coefficient"]["unit"] == "N s/m"
     first = data["candidates"][0]
@@ -77,7 +79,16 @@ def test_people_read_it_on_one_screen(done: Done) -> None:
     out, err = done[0].stdout, done[0].stderr
     assert len(out.splitlines()) < 50
     assert max(map(len, out.splitlines())) < 160
-    for part in ("FAILS", "95 % interval", "as given", "refitted", "+ viscous_friction", "Not added", "because", "N s/m"):
+    for part in (
+        "FAILS",
+        "95 % interval",
+        "as given",
+        "refitted",
+        "+ viscous_friction",
+        "Not added",
+        "because",
+        "N s/m",
+    ):
         assert part in out
     assert "runs/holdout_sweep is held out, not fitted" in err
     assert "Diagnosing: " in err
@@ -107,7 +118,9 @@ def test_wrong_use_is_said_before_any_work(
     assert "there is no folder" in refused(capsys, "runs", *held, "--report", "nowhere/page.html")
     assert "there is no folder" in refused(capsys, "runs", *held, "--out", "nowhere/model.yaml")
     (folder / "mine.yaml").write_text("mine")
-    assert "mine.yaml exists; name another file, or add --overwrite" in refused(capsys, "runs", *held, "--out", "mine.yaml")
+    assert "mine.yaml exists; name another file, or add --overwrite" in refused(
+        capsys, "runs", *held, "--out", "mine.yaml"
+    )
     assert "missing_run" in refused(capsys, "missing_run", *held, code=3)
 
 
@@ -119,7 +132,14 @@ def test_a_copy_is_not_held_out(folder: Path, tmp_path: Path, capsys: pytest.Cap
 
 
 def test_an_interrupt_leaves_what_was_found(folder: Path, tmp_path: Path) -> None:
-    options = ["--holdout", "runs/holdout_sweep", "--out", str(tmp_path / "part.yaml"), "--json", str(tmp_path / "j.json")]
+    options = [
+        "--holdout",
+        "runs/holdout_sweep",
+        "--out",
+        str(tmp_path / "part.yaml"),
+        "--json",
+        str(tmp_path / "j.json"),
+    ]
     line = [sys.executable, "-m", "pneumo_ros", "diagnose", "runs", *options]
     with subprocess.Popen(line, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
