@@ -8,6 +8,7 @@ from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, VARIABLES, amount, n
 
 SHOWN = 4  # refused candidates
 REASONS = 2  # of each
+FOLLOWS = 0.1  # share of a residual that a variable must explain to be named
 ENOUGH = 1.3  # noise floors: what predictions from estimated starts leave when nothing is wrong
 
 
@@ -163,7 +164,7 @@ def _left(result: Mapping[str, Any]) -> str:
     left = result["unexplained"]
     ratio = result["equations"]["after"][left["equation"]]["ratio_to_noise"]
     size = f"{amount(left['residual_rms'], left['equation'])} rms, {times(ratio)} the noise"
-    if left["explained_share"] is None or left["explained_share"] < 0.1:
+    if not left["shape"] or left["explained_share"] is None or left["explained_share"] < FOLLOWS:
         return f"{size}, and it follows none of position, velocity, voltage, pressures and time"
     words, unit, factor = VARIABLES[left["against"]]
     (x0, y0), (x1, y1) = (pick(left["shape"], key=lambda point: point[1]) for pick in (min, max))

@@ -16,7 +16,7 @@ from pneumo_ros.plant import load_model
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Recordings of a machine with viscous friction."""
-    return shelf(tmp_path_factory.mktemp("add"))
+    return shelf(tmp_path_factory.mktemp("add"), ["steps"])
 
 
 @pytest.fixture(autouse=True)

@@ -38,7 +38,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model = load_model("axis", [folder / "mine.py"])
     truth = model.with_effects([*model.effects, "magnetic_detent"], {"magnetic_detent.strength": STRENGTH})
     save_model(truth, folder / "truth.yaml")
-    for name, wave in (("fast", "sine:2.5,0.4"), ("holdout", "sine:3,0.25")):
+    for name, wave in (("fast", "sine:2.5,0.4"), ("far", "sine:3,0.25"), ("holdout", "sine:2,0.3")):
         options = ["--model", "truth.yaml", "--input", wave, "--seconds", "4", "--out", name]
         done = pneumo("simulate", *options, folder=folder)
         assert done.returncode == 0, done.stderr
@@ -46,7 +46,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_it_is_found_missing(folder: Path) -> None:
-    done = pneumo("diagnose", "fast", "--holdout", "holdout", "--json", "d.json", "--out", "found.yaml", folder=folder)
+    done = pneumo(
+        "diagnose", "fast", "far", "--holdout", "holdout", "--json", "d.json", "--out", "found.yaml", folder=folder
+    )
     assert done.returncode == 0, done.stderr
     (added,) = json.loads((folder / "d.json").read_text())["added"]
     assert added["effect"] == "magnetic_detent"
