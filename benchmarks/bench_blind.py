@@ -1,0 +1,131 @@
+"""Diagnosis of machines that hide something: the independent rig simulator records, the diagnosis does not know what.
+
+Each seed is a machine worn by 5 %, with other excitation and noise. `single` hides one effect of the catalogue, in one
+of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides what no
+catalogue has, `healthy` nothing; `rough` and `rough_healthy` those of a machine with a coloured force and a
+friction texture that no model has. Tables show rates with 95 % intervals (Wilson), and the targets beside them.
+
+    python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--jobs 2]
+
+Results go to a file as they come, one line of JSON each. What it holds already, for the same code, is not run again: an
+interrupted run goes on where it was. `--seeds 0` prints the tables of what is there; --code those of other code.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+import blind_figures as figures
+import blind_tables as tables
+from blind_case import KINDS, ROOT, code_hash, drawn_strength
+
+Job = tuple[str, int, float]  # kind, seed, strength
+Key = tuple[str, str, int, float]  # code and job
+CASE = Path(__file__).with_name("blind_case.py")
+
+
+def arguments() -> argparse.Namespace:
+    """The options."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=2, help="how many (default 2)")
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--kind", choices=(*KINDS, "all"), default="all")
+    parser.add_argument("--strength", type=float, help="share of full strength, for all; else drawn from 0.2 to 1")
+    parser.add_argument("--jobs", type=int, default=2, help="cases side by side (default 2)")
+    parser.add_argument("--json", type=Path, default=ROOT / ".cache" / "blind.jsonl", metavar="FILE", help="results")
+    parser.add_argument("--code", help="tables of results of this code (default: of the code that is here)")
+    return parser.parse_args()
+
+
+def wanted(options: argparse.Namespace) -> list[Job]:
+    """The cases asked for, seed by seed, so that an interrupted run has some of every kind."""
+    kinds = KINDS if options.kind == "all" else (options.kind,)
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    return [(kind, seed, options.strength or drawn_strength(kind, seed)) for seed in seeds for kind in kinds]
+
+
+def stored(path: Path) -> dict[Key, dict[str, Any]]:
+    """Results in the file; a last line that was cut off is passed over."""
+    found: dict[Key, dict[str, Any]] = {}
+    for line in path.read_text().splitlines() if path.exists() else ():
+        try:
+            one = json.loads(line)
+        except json.JSONDecodeError:
+            continue
+        found[one["code"], one["kind"], one["seed"], one["strength"]] = one
+    return found
+
+
+def run_case(job: Job) -> tuple[str, str]:
+    """Output and error output of one case, in a process of its own."""
+    paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths)), "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, str(CASE), *map(str, job)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    return done.stdout, "" if done.returncode == 0 else done.stderr or f"ended by signal {-done.returncode}"
+
+
+def run_all(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
+    """Run cases and append their results to the file; returns what failed."""
+    broken, begun = [], time.monotonic()
+    options.json.parent.mkdir(parents=True, exist_ok=True)
+    with options.json.open("a") as file, ThreadPoolExecutor(options.jobs) as pool:
+        waiting = {pool.submit(run_case, job): job for job in jobs}
+        try:
+            for count, future in enumerate(as_completed(waiting), 1):
+                job, (out, problem) = waiting[future], future.result()
+                if problem:
+                    broken.append(f"{job[0]} {job[1]} {job[2]}: {problem.strip().splitlines()[-1]}")
+                file.write("" if problem else out)
+                file.flush()
+                left = (time.monotonic() - begun) * (len(jobs) / count - 1.0) / 60.0
+                text = "failed" if problem else summary(json.loads(out))
+                print(
+                    f"{count}/{len(jobs)}, {left:.0f} min left: {job[0]} {job[1]}: {text}", file=sys.stderr, flush=True
+                )
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            print("interrupted; the same command goes on from here", file=sys.stderr)
+    return broken
+
+
+def summary(result: dict[str, Any]) -> str:
+    """One case in a line."""
+    hidden = " + ".join(hidden["shape"] for hidden in result["hidden"]) or "nothing"
+    found = " + ".join(added["effect"] for added in result["added"]) or "nothing"
+    return f"{hidden} ({result['strength']:.2f}): {result['verdict']}, {found}; {result['wall']:.0f} s"
+
+
+def main() -> int:
+    """Run what is not there yet, print; 1 if a case failed."""
+    options, code = arguments(), code_hash()
+    known = stored(options.json)
+    broken = run_all([job for job in wanted(options) if (code, *job) not in known], options)
+    results = [one for key, one in stored(options.json).items() if key[0] == (options.code or code)]
+    print(f"code {options.code or code}, {os.cpu_count()} processors, {options.jobs} cases at a time")
+    if results:
+        counts = Counter(one["kind"] for one in results)
+        print(f"{len(results)} cases: {', '.join(f'{kind} {counts[kind]}' for kind in KINDS if counts[kind])}")
+        for table in TABLES:
+            print(f"\n{table(results)}")
+    if broken:
+        print("\nfailed\n  " + "\n  ".join(broken))
+    return int(bool(broken))
+
+
+TABLES = (
+    tables.rates_table, tables.empty_table, tables.outside_table, tables.confusion_table, tables.failures,
+    figures.parameters_table, figures.held_out_table, figures.cost_table,
+)  # fmt: skip
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,141 @@
+"""One case of the blind benchmark: a machine of the independent rig is recorded and diagnosed.
+
+    python benchmarks/blind_case.py KIND SEED STRENGTH
+
+prints one line of JSON: the truth, what was found, what it cost. Each case has a process of its own, and so its own peak
+of memory.
+"""
+
+import hashlib
+import json
+import resource
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from blind_parameters import true_parameters
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "test"))  # the rig imports as `rig`
+
+STEP = 4e-5  # s, of the rig; twice that of its command line
+WEAKEST = 0.2  # share of full strength
+RANKED = 5  # candidates kept
+KINDS = ("single", "pair", "healthy", "outside", "rough", "rough_healthy")
+PARTNER = {"single": "healthy", "pair": "healthy", "rough": "rough_healthy"}  # the same machine with nothing hidden
+JUDGED = ("plant", "records", "identify", "diagnose", "discover")  # parts of the package that a result depends on
+
+
+def code_hash() -> str:
+    """Identifies the code that results depend on: the package without its commands and nodes, the rig, the cases."""
+    folders = [*(ROOT / "pneumo_ros" / part for part in JUDGED), ROOT / "pneumo_ros" / "config", ROOT / "test" / "rig"]
+    files = [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".yaml")]
+    digest = hashlib.sha256()
+    for path in [*sorted(files), Path(__file__), Path(__file__).with_name("blind_parameters.py")]:
+        digest.update(str(path.relative_to(ROOT)).encode() + path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def drawn_strength(kind: str, seed: int) -> float:
+    """Share of full strength, uniform from a fifth."""
+    return float(np.random.default_rng([seed, KINDS.index(kind), 4]).uniform(WEAKEST, 1.0))
+
+
+def drawn_shape(seed: int, salt: int) -> str:
+    """Every catalogue name once in as many seeds, in an order and a shape that are drawn."""
+    from rig.effects import EFFECTS, OUTSIDE
+
+    shapes: dict[str, list[str]] = {}
+    for name in EFFECTS:
+        if name not in OUTSIDE:
+            shapes.setdefault(name.partition(":")[0], []).append(name)
+    turn, place = divmod(seed, len(shapes))
+    name = list(shapes)[np.random.default_rng([turn, salt]).permutation(len(shapes))[place]]
+    return str(np.random.default_rng([seed, salt]).choice(shapes[name]))
+
+
+def build_case(kind: str, seed: int, strength: float) -> Any:
+    """The rig's case; KeyError for an unknown kind."""
+    from rig import effects
+
+    if kind == "pair":
+        return effects.draw(seed, 2, (strength, strength))
+    wishes = {
+        "single": lambda: [effects.Wish(drawn_shape(seed, 6))],
+        "rough": lambda: [effects.Wish(drawn_shape(seed, 7))],
+        "outside": lambda: [effects.Wish(list(effects.OUTSIDE)[seed % len(effects.OUTSIDE)])],
+        "healthy": list,
+        "rough_healthy": list,
+    }[kind]()
+    return effects.build(seed, wishes, rough=kind.startswith("rough"), scale=strength)
+
+
+def recorded(case: Any) -> list[Any]:
+    """The runs of a case, written as bags and read again."""
+    from rig import bags
+    from rig import case as rig_case
+
+    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.records import read_recording
+
+    with tempfile.TemporaryDirectory() as folder:
+        runs = []
+        for run in rig_case.make_runs(case, rig_case.runs_for(case), step=STEP):
+            path = Path(folder) / run.name
+            bags.write(path, run, rig_case.epoch(case.seed))
+            runs.append(make_run(read_recording(path)))
+    return runs
+
+
+def found(outcome: Any) -> dict[str, Any]:
+    """What is kept of an outcome."""
+    left = outcome.unexplained
+    return {
+        "verdict": outcome.verdict,
+        "failing": outcome.failing,
+        "added": [
+            {
+                "effect": a.effect,
+                "group": a.indistinguishable_from,
+                "t": a.t,
+                "parameters": {key: (p.value, p.std) for key, p in a.parameters.items()},
+            }
+            for a in outcome.added
+        ],
+        "ranking": [(r.effect, r.score, r.holdout_gain, r.objections) for r in outcome.ranking[:RANKED]],
+        "course": outcome.course,
+        "unexplained": left and {"equation": left.equation, "against": left.against, "rms": left.rms},
+    }
+
+
+def diagnosed(kind: str, seed: int, strength: float) -> dict[str, Any]:
+    """Record and diagnose one case."""
+    from pneumo_ros.discover.diagnosis import diagnose
+    from pneumo_ros.plant import load_model
+
+    result: dict[str, Any] = {"code": code_hash(), "kind": kind, "seed": seed, "strength": strength}
+    case = build_case(kind, seed, strength)
+    runs = recorded(case)
+    parts = [[run for run in runs if run.name.startswith("holdout") is held] for held in (False, True)]
+    wall, processor = time.perf_counter(), time.process_time()
+    outcome = diagnose(load_model("axis"), *parts)
+    if outcome.interrupted:
+        raise KeyboardInterrupt
+    cost = {"wall": time.perf_counter() - wall, "processor": time.process_time() - processor}
+    hidden = [{k: v for k, v in effect.items() if k != "fields"} for effect in case.truth["effects"]]
+    return {
+        **result,
+        "hidden": hidden,
+        "true_parameters": true_parameters(case.truth),
+        **found(outcome),
+        **cost,
+        "recorded": sum(float(run.time[-1]) for run in runs),
+        "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
+    }
+
+
+if __name__ == "__main__":
+    print(json.dumps(diagnosed(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]))))

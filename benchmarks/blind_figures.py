@@ -1,0 +1,79 @@
+"""Figures of the blind benchmark: parameters of added effects, held-out errors, cost."""
+
+import statistics
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+
+from blind_case import PARTNER
+from blind_tables import EMPTY, HIDING, Result, Z, of_kind, rate
+
+HELD_OUT, WITHIN, COVERED, SECONDS, MEGABYTES = 1.3, 0.05, 85.0, 60.0, 2000.0
+
+
+def parameters_table(results: Sequence[Result]) -> str:
+    """Errors and intervals of the parameters of added effects, where rig and catalogue mean the same."""
+    rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
+    for result in results:
+        for added in result["added"]:
+            for key, truth in result["true_parameters"].get(added["effect"], {}).items():
+                value, std = added["parameters"][key]
+                rows[f"{added['effect']}.{key}"].append((truth, value, std))
+    names = ("n", "median error", "worst", "within 5 %", "interval holds it", "undetermined")
+    lines = [f"{'parameters of added effects':48s}" + "".join(f"{name:>22s}" for name in names)]
+    for name in sorted(rows):
+        lines.append(_parameter(name, rows[name]))
+    every = [row for values in rows.values() for row in values]
+    if every:
+        lines.append(_parameter("all", every) + f"   (targets: within 5 %; held in {COVERED:g} %)")
+    return "\n".join(lines)
+
+
+def _parameter(name: str, rows: Sequence[tuple[float, float, float]]) -> str:
+    known = [row for row in rows if row[2] != float("inf")]
+    errors = [abs(value / truth - 1.0) for truth, value, _ in known if truth]  # a truth of zero has no relative error
+    within = rate(sum(error <= WITHIN for error in errors), len(errors))
+    held = rate(sum(abs(value - truth) <= Z * std for truth, value, std in known), len(known))
+    middle = f"{100.0 * statistics.median(errors):.2f} %" if errors else "-"
+    worst = f"{100.0 * max(errors):.1f} %" if errors else "-"
+    cells = (str(len(rows)), middle, worst, within, held, str(len(rows) - len(known)))
+    return f"{name:48s}" + "".join(f"{cell:>22s}" for cell in cells)
+
+
+def held_out_table(results: Sequence[Result]) -> str:
+    """Held-out error after adding against that of the healthy machine of the same seed, refitted."""
+    refitted = {(r["kind"], r["seed"]): r["course"][1][1] for r in of_kind(results, *EMPTY)}
+    lines = [
+        "held-out 1 s error over the healthy machine's (same seed, refitted)   at most 1.3: target 100 % of same shape"
+    ]
+    for same, title in ((True, "shape in the catalogue"), (False, "another shape")):
+        ratios = [
+            r["course"][-1][1] / refitted[PARTNER[r["kind"]], r["seed"]]
+            for r in of_kind(results, *HIDING)
+            if (PARTNER[r["kind"]], r["seed"]) in refitted and all(h["same_shape"] for h in r["hidden"]) is same
+        ]
+        if ratios:
+            ok = rate(sum(ratio <= HELD_OUT for ratio in ratios), len(ratios))
+            lines.append(
+                f"  {title:24s}median {statistics.median(ratios):.2f}, worst {max(ratios):.2f}, at most 1.3: {ok}"
+            )
+    without = [r for r in of_kind(results, *HIDING) if (PARTNER[r["kind"]], r["seed"]) not in refitted]
+    if without:
+        lines.append(f"  {len(without)} cases without it: run the same seeds with --kind healthy or rough_healthy")
+    return "\n".join(lines)
+
+
+def cost_table(results: Sequence[Result]) -> str:
+    """Time and memory; times for 150 s of recordings are scaled by their length."""
+    shown: dict[str, Callable[[Result], float]] = {
+        "wall [s]": lambda r: r["wall"],
+        "processor [s]": lambda r: r["processor"],
+        "wall for 150 s [s]": lambda r: r["wall"] * 150.0 / r["recorded"],
+        "memory peak [MB]": lambda r: r["peak_mb"],
+    }
+    targets = {"wall for 150 s [s]": SECONDS, "memory peak [MB]": MEGABYTES}
+    lines = [f"cost of a diagnosis{'median':>17s}{'worst':>12s}"]
+    for name, value in shown.items():
+        values = [value(result) for result in results]
+        target = f"   (target: under {targets[name]:g})" if name in targets else ""
+        lines.append(f"  {name:22s}{statistics.median(values):12.1f}{max(values):12.1f}{target}")
+    return "\n".join(lines)

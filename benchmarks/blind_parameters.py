@@ -1,0 +1,73 @@
+"""True values of catalogue parameters, from the fields of the rig's machine, where both mean the same by them."""
+
+from collections.abc import Callable, Mapping
+from math import pi, sqrt
+from typing import Any
+
+Fields = Mapping[str, float]
+NEW_VOLUMES = {"volume_a": 5.1e-4, "volume_b": 4.0e-4}  # m3, of the machine file
+
+
+def _load_frequency(m: Fields) -> float:
+    return sqrt(m["coupling"] / _hanging(m)) / (2.0 * pi)
+
+
+def _hanging(m: Fields) -> float:
+    return m["load_share"] * (m["mass"] + m["payload"])
+
+
+def _tank_time(m: Fields) -> float:
+    return m["tank"] * m["feed"] / (m["adiabatic"] * m["gas_constant"] * m["temperature"])
+
+
+# By the rig's name of the shape. What is not here has another equation than the catalogue, and only a name to compare.
+TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
+    "viscous_friction": {"coefficient": lambda m: m["viscous_out"]},
+    "asymmetric_friction": {"ratio": lambda m: m["retract_excess"]},
+    "asymmetric_viscous_friction": {"difference": lambda m: m["viscous_in"] - m["viscous_out"]},
+    "pressure_dependent_friction": {"coefficient": lambda m: m["seal"]},
+    "stribeck_shape": {"exponent": lambda m: m["stribeck_power"]},
+    "friction_warmup": {"share": lambda m: m["warm_share"], "time_constant": lambda m: m["warm_fast"]},
+    "friction_lag:film": {"time_constant": lambda m: m["lag_film"]},
+    "payload_mass": {"mass_added": lambda m: m["payload"]},
+    "constant_load": {"load": lambda m: m["load"]},
+    "spring_load": {"stiffness": lambda m: m["spring"], "rest_position": lambda m: m["spring_centre"]},
+    "load_compliance": {
+        "load_share": lambda m: m["load_share"],
+        "frequency": _load_frequency,
+        "damping_ratio": lambda m: 0.5 * m["coupling_damping"] / sqrt(m["coupling"] * _hanging(m)),
+    },
+    "backlash": {"gap": lambda m: 2.0 * m["encoder_play"]},
+    "choked_flow": {
+        "conductance_filling": lambda m: m["sonic_conductance"],
+        "conductance_exhaust": lambda m: m["sonic_conductance"] * m["exhaust"] / m["fill"],
+        "critical_ratio": lambda m: m["critical_ratio"],
+    },
+    "valve_spool_dynamics": {
+        "angular_frequency": lambda m: m["spool_rate"],
+        "damping_ratio": lambda m: m["spool_damping"],
+    },
+    "valve_null_offset": {"offset": lambda m: m["null_offset"]},
+    "valve_hysteresis": {"half_width": lambda m: m["play"]},
+    "supply_pressure_droop": {"resistance_supply": lambda m: m["feed"], "time_constant": _tank_time},
+    "line_delay": {"delay": lambda m: m["line_delay"], "loss_pressure": lambda m: m["line_loss"]},
+    "cross_piston_leakage": {"conductance": lambda m: m["cross"]},
+    "leakage_to_atmosphere": {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]},
+    "dead_volume": {
+        "volume_added_a": lambda m: m["volume_a"] - NEW_VOLUMES["volume_a"],
+        "volume_added_b": lambda m: m["volume_b"] - NEW_VOLUMES["volume_b"],
+    },
+    "pressure_sensor_offset": {"offset_a": lambda m: m["offset_a"], "offset_b": lambda m: m["offset_b"]},
+    "pressure_sensor_gain": {"error_a": lambda m: m["gain_a"], "error_b": lambda m: m["gain_b"]},
+    "position_sensor_delay": {"delay": lambda m: m["position_delay"]},
+}
+
+
+def true_parameters(truth: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """By catalogue effect and parameter, what the rig's `truth` of a case says; effects of other shape are left out."""
+    machine = truth["machine"]
+    return {
+        hidden["effect"]: {key: float(value(machine)) for key, value in TRUE[hidden["shape"]].items()}
+        for hidden in truth["effects"]
+        if hidden["same_shape"] and hidden["shape"] in TRUE
+    }

@@ -1,0 +1,152 @@
+"""What the blind benchmark counts, from its results, one dictionary per case."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from math import sqrt
+from typing import Any
+
+from pneumo_ros.command.revealing import EXACT, GROUP, Judgement, judge, pairing
+
+Result = dict[str, Any]
+BANDS = ((0.7, 1.0), (0.4, 0.7), (0.2, 0.4))
+HIDING = {"single": 90.0, "pair": 75.0, "rough": None}  # kinds that hide catalogue effects: target for right [%]
+EMPTY = ("healthy", "rough_healthy")
+Z = 1.96
+
+
+def wilson(hits: int, of: int) -> tuple[float, float]:
+    """95 % interval of a rate (Wilson 1927), as shares."""
+    if not of:
+        return 0.0, 1.0
+    share, spread = hits / of, Z * Z / of
+    middle = (share + 0.5 * spread) / (1.0 + spread)
+    half = Z / (1.0 + spread) * sqrt(share * (1.0 - share) / of + 0.25 * spread / of)
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
+def rate(hits: int, of: int) -> str:
+    """Hits, cases, per cent and interval."""
+    if not of:
+        return "-"
+    low, high = wilson(hits, of)
+    return f"{hits}/{of} {100.0 * hits / of:.0f} % ({100.0 * low:.0f}-{100.0 * high:.0f})"
+
+
+def judgement(result: Result) -> Judgement:
+    """The judge's verdict on a case of catalogue effects; all that is added to another kind is false."""
+    names = [hidden["effect"] for hidden in result["hidden"] if hidden["in_catalogue"]]
+    return judge(names, additions(result))
+
+
+def additions(result: Result) -> list[tuple[str, Sequence[str]]]:
+    """Effects added, each with its rivals."""
+    return [(added["effect"], added["group"]) for added in result["added"]]
+
+
+def of_kind(results: Iterable[Result], *kinds: str) -> list[Result]:
+    """Results of these kinds."""
+    return [result for result in results if result["kind"] in kinds]
+
+
+def rates_table(results: Sequence[Result]) -> str:
+    """Right, missed and false by kind and by strength."""
+    columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first")
+    lines = [f"{'hidden effects':24s}" + "".join(f"{name:>22s}" for name in columns)]
+    for kind, target in HIDING.items():
+        some = of_kind(results, kind)
+        if not some:
+            continue
+        lines.append(_rates(kind, some) + (f"   (target for right: {target:g} %)" if target else ""))
+        for low, high in BANDS:
+            band = [r for r in some if low <= r["strength"] < high or r["strength"] == high == 1.0]
+            if band:
+                lines.append(_rates(f"  strength {low:g}-{high:g}", band))
+    return "\n".join(lines)
+
+
+def _rates(name: str, results: Sequence[Result]) -> str:
+    judged = [judgement(result) for result in results]
+    counts = (
+        sum(j.word == EXACT for j in judged),
+        sum(j.word == GROUP for j in judged),
+        sum(j.right for j in judged),
+        sum(bool(j.missed or j.vague) for j in judged),
+        sum(bool(j.false) for j in judged),
+        sum({h["effect"] for h in r["hidden"]} == {a["effect"] for a in r["added"]} for r in results),
+    )
+    return f"{name:24s}" + "".join(f"{rate(count, len(results)):>22s}" for count in counts)
+
+
+def empty_table(results: Sequence[Result]) -> str:
+    """Machines with nothing hidden."""
+    lines = [f"{'nothing hidden':24s}{'nothing added':>22s}{'verdict adequate':>22s}"]
+    for kind in EMPTY:
+        if some := of_kind(results, kind):
+            clean, adequate = sum(not r["added"] for r in some), sum(r["verdict"] == "adequate" for r in some)
+            target = "   (target for nothing added: 98 %)" if kind == "healthy" else ""
+            lines.append(f"{kind:24s}{rate(clean, len(some)):>22s}{rate(adequate, len(some)):>22s}{target}")
+    return "\n".join(lines)
+
+
+def right_equation(result: Result) -> bool:
+    """Whether what remains is shown in an equation that the hidden effect enters."""
+    left = result["unexplained"]
+    return bool(left) and left["equation"] in result["hidden"][0]["equations"]
+
+
+def outside_table(results: Sequence[Result]) -> str:
+    """Effects that no catalogue has."""
+    columns = ("flagged as unknown", "adequate", "look-alike added", "remainder shown")
+    lines = [f"{'outside the catalogue':24s}" + "".join(f"{name:>22s}" for name in columns)]
+    some = of_kind(results, "outside")
+    by_name = {"all": some}
+    for result in some:
+        by_name.setdefault(result["hidden"][0]["effect"], []).append(result)
+    for name, group in by_name.items():
+        counts = (
+            sum(r["verdict"] == "unknown_effect" and right_equation(r) for r in group),
+            sum(r["verdict"] == "adequate" for r in group),
+            sum(bool(r["added"]) for r in group),
+            sum(right_equation(r) for r in group),
+        )
+        target = "   (targets: flagged in the right equation 80 %, adequate never)" if name == "all" else ""
+        lines.append(f"{name:24s}" + "".join(f"{rate(count, len(group)):>22s}" for count in counts) + target)
+    return "\n".join(lines)
+
+
+def confusion_table(results: Sequence[Result]) -> str:
+    """Truth by what was found for it; additions left over stand beside what was missed, or with nothing."""
+    seen: dict[str, Counter[str]] = defaultdict(Counter)
+    for result in results:
+        names, added = [hidden["effect"] for hidden in result["hidden"]], additions(result)
+        found = pairing(names, added)
+        left = [effect for place, (effect, _) in enumerate(added) if place not in found.values()]
+        for name in names:
+            if name in found:
+                effect, rivals = added[found[name]]
+                seen[name][
+                    f"{'=' if effect == name else effect}{f' (one of {1 + len(rivals)})' if rivals else ''}"
+                ] += 1
+            else:
+                seen[name][" + ".join(left) or "nothing"] += 1
+        if left and len(found) == len(names):
+            seen["(nothing)"][" + ".join(left)] += 1
+    lines = ["truth                         found: times (= itself; one of n: it leaves n open)"]
+    for name in sorted(seen):
+        lines.append(f"{name:30s}" + ", ".join(f"{other}: {n}" for other, n in seen[name].most_common()))
+    return "\n".join(lines)
+
+
+def failures(results: Sequence[Result]) -> str:
+    """Every case that is not right, by effect, with what repeats it."""
+    lines = ["not right"]
+    for result in sorted(results, key=lambda r: ([h["shape"] for h in r["hidden"]], r["kind"], r["seed"])):
+        outside = result["kind"] == "outside"
+        if result["verdict"] == "unknown_effect" and right_equation(result) if outside else judgement(result).right:
+            continue
+        found = [f"{a['effect']}{[*a['group']] if a['group'] else ''}" for a in result["added"]]
+        hidden = " + ".join(f"{h['shape']}={h['size']:.3g}" for h in result["hidden"]) or "nothing"
+        said = f"{result['verdict']}, {', '.join(found) or 'nothing added'}"
+        lines.append(f"  {hidden}: {said}   [{result['kind']} {result['seed']} {result['strength']:.3f}]")
+    lines.append("  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH, the words in brackets")
+    return "\n".join(lines)
