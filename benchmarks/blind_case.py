@@ -2,8 +2,8 @@
 
     python benchmarks/blind_case.py KIND SEED STRENGTH
 
-prints one line of JSON: the truth, what was found, what it cost. Each case has a process of its own, and so its own peak
-of memory.
+prints one line of JSON: the truth, what was found, what it cost. Each case has its own process, and so its own peak of
+memory.
 """
 
 import hashlib
