@@ -1,11 +1,11 @@
-# make demo   see the axis run on ROS 2, recorded and compared
+# make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
 # make test   lint, types and tests, as continuous integration runs them
 # make bench  print the tables of benchmarks/
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
 #   PYTHON=python3.12       the Python to use; else the first suitable one is found
-#   RIG=path                recordings of a test rig, for the demo (../shared/rig)
+#   RIG=path                recordings of a test rig, for the tests (../shared/rig)
 #   DEMO="--seconds 5"      further options of `pneumo demo`
 #   PYTEST="-k records -x"  further options of pytest
 
@@ -48,19 +48,9 @@ $(READY): setup.py tools/make_venv | .cache/tmp
 	@tools/make_venv $(VENV) $(PYTHON)
 	@touch $@
 
-# The demo compares with a recording it did not make: of a rig where there is one, else of the second simulator
-# under test/, which shares no code with the package.
-MEASURED := $(RIG)/healthy/holdout_steps
-ifeq ($(wildcard $(MEASURED)/metadata.yaml),)
-MEASURED := .cache/rig/holdout_steps
-endif
-
-.cache/rig/holdout_steps: | $(READY)
-	@rm -rf .cache/rig
-	@$(BIN)/python test/rig --out .cache/rig --runs holdout_steps --seed 1 --quiet >/dev/null
-
-demo: $(READY) $(MEASURED) | .cache/tmp
-	@$(BIN)/pneumo demo --recording $(MEASURED) $(DEMO)
+# The demo diagnoses a machine that the second simulator under test/ makes up, which shares no code with the package.
+demo: $(READY) | .cache/tmp
+	@$(BIN)/pneumo demo $(if $(SEED),--seed $(SEED)) $(DEMO)
 
 test: $(READY) | .cache/tmp
 	@tools/chromium

@@ -68,6 +68,12 @@ def test_the_truth_stands_beside_the_case_and_not_in_it(tmp_path):
     assert {path.name for path in folder.iterdir()} == {"constant_p7000"}
 
 
+@pytest.mark.parametrize(("effect", "ends"), [("constant_load=35", False), ("cushioning=0.05", True)])
+def test_a_pattern_takes_runs_to_the_ends_where_they_show_something(tmp_path, effect, ends):
+    command.main(["--out", str(tmp_path / "case"), "--effect", effect, "--runs", "constant_p7000", "holdout_[es]nds"])
+    assert (tmp_path / "case" / "holdout_ends").exists() is ends
+
+
 def test_a_seed_repeats_to_the_byte_in_another_process(tmp_path):
     for name in ("one", "two"):
         options = ["--seed", "5", "--effect", "random", "--rough", "--runs", "constant_m7000", "--quiet"]

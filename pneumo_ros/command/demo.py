@@ -1,137 +1,108 @@
-"""The axis on ROS 2: simulator, controller and recorder run as processes; the recording is compared with the model."""
+"""The whole story: an axis on ROS 2, then a machine that hides an effect, which is found, added and at last revealed.
+
+The machine is drawn by a seed and simulated by another program, which writes what it hid where nothing looks before the
+end: in a checkout by the simulator under test/rig, which shares no code with the package, else by the package's plant.
+"""
 
 import argparse
 import math
-import time
+import random
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_output
 from pneumo_ros.command.bag_summary import hardship, traffic
-from pneumo_ros.command.chart import chart
 from pneumo_ros.command.compare import equations_text, run_text
 from pneumo_ros.command.console import Console, program
-from pneumo_ros.command.processes import Fleet
+from pneumo_ros.command.demo_axis import drive, motion
+from pneumo_ros.command.demo_machine import find_effect
+from pneumo_ros.command.hidden_machine import second_simulator
 from pneumo_ros.environment import require_ros
-from pneumo_ros.errors import DataError, PneumoError, UsageError
+from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison
     from pneumo_ros.records import Recording
 
-LEVELS = (0.1, -0.05, 0.05, 0.0)  # m, where the piston is sent, one after the other
-SECONDS = 16.0  # in all
-START = 60.0  # s, until the first valve command; the kernel may have to be compiled
-# Sensors as on a rig: position alone, 5 um and 10 um steps; 300 Pa and 16 bit over 10 bar
-SENSORS = {
-    "publish_velocity": False,
-    "noise_position": 5e-6,
-    "quantisation_position": 1e-5,
-    "noise_pressure": 300.0,
-    "quantisation_pressure": 1e6 / 2**16,
-    "seed": 1,
-}
-NAMESPACE = "demo"
+SECONDS = 16.0  # that the axis runs
+SEEDS = 10_000  # to draw from where none is given
 OWN_ERROR = """This plant is the model. What exceeds the noise is timing: a command acts when it reaches the simulator
 and is stamped when it reaches the recorder, a fraction of a millisecond apart, and a piston near sticking minds."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--recording, --seconds, --out and the common options."""
+    """--seed, --rig, --recording, --seconds, --out and the common options."""
+    draw = "draws the machine and what it hides (default: another one each time)"
+    rig = "simulator to record the machine with (default: test/rig of a checkout); none: this package's plant"
     other = "also compare the default machine with this recording, which it has not made"
     length = f"how long the axis runs (default: {SECONDS:g})"
+    parser.add_argument("--seed", type=int, metavar="N", help=draw)
+    parser.add_argument("--rig", metavar="FOLDER", help=rig)
     parser.add_argument("--recording", metavar="BAG", help=other)
     parser.add_argument("--seconds", type=float, default=SECONDS, metavar="S", help=length)
-    parser.add_argument("--out", metavar="DIR", help="new folder for bag and logs (default: demo_output/1, 2, ...)")
+    parser.add_argument(
+        "--out", metavar="DIR", help="new folder for all that is written (default: demo_output/1, 2, ...)"
+    )
     add_output(parser)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Run the nodes, read the bag back, compare."""
+    """Run the nodes, record and diagnose the machine, reveal what it hid; 1 when a node ended badly."""
     require_ros()
     if not (math.isfinite(options.seconds) and options.seconds >= 4.0):
         raise UsageError(f"--seconds is {options.seconds:g}; it takes at least 4, so that there is something to see")
+    seed, rig = _seed(options.seed), _rig(options.rig)
     other = _recording(options.recording) if options.recording else None
     folder = check_new_folder(options.out) if options.out else _next_folder(Path("demo_output"))
     folder.mkdir(parents=True)
-    bag = folder / "bag"
+    result: dict[str, Any] = {"schema_version": 1, "seed": seed, "rig": rig, **_axis(folder, options.seconds, console)}
+    if other:
+        console.say("\nThe model against a recording it did not make\n")
+        result["other"] = _compare(other, console).as_dict()
+    result |= find_effect(folder, seed, rig, console)
+    console.say(f"\nAll of it is in {folder}. Next:\n  {program()} effects\n  {program()} --help")
+    console.json(result)
+    return int(any(result["exit_codes"].values()))
 
-    console.say("1. The axis runs: simulator, controller and recorder, three processes on ROS 2\n")
-    codes = drive(bag, folder / "logs", options.seconds, console)
+
+def _seed(given: int | None) -> int:
+    if given is not None and given < 0:
+        raise UsageError(f"--seed is {given}; it takes a whole number from 0, such as --seed {-given}")
+    return random.SystemRandom().randrange(SEEDS) if given is None else given
+
+
+def _rig(given: str | None) -> Path | None:
+    if given is None:
+        return second_simulator()
+    if given != "none" and not (Path(given) / "__main__.py").is_file():
+        raise UsageError(f"--rig is {given}, which holds no simulator; give the folder test/rig of a checkout, or none")
+    return None if given == "none" else Path(given)
+
+
+def _axis(folder: Path, seconds: float, console: Console) -> dict[str, Any]:
+    """The axis on ROS 2, its motion, and the model against it."""
+    bag = folder / "bag"
+    console.say("1. An axis runs: simulator, controller and recorder, three processes on ROS 2\n")
+    codes = drive(bag, folder / "logs", seconds, console)
     console.say(traffic(bag))
     console.say(f"\nExit codes: {', '.join(f'{name} {code}' for name, code in codes.items())}")
     if busy := hardship(bag):
         console.say(f"\n{busy}")
     recording = _recording(bag)
     console.say("\n2. It moves: piston position (*) and reference (-)\n")
-    console.say(motion(recording, options.seconds))
+    console.say(motion(recording, seconds))
     console.say("\n3. The model against the recording just made\n")
     own = _compare(recording, console)
     console.say(f"\n{OWN_ERROR}")
-    result: dict[str, Any] = {"schema_version": 1, "bag": bag, "exit_codes": codes, "own": own.as_dict()}
-    if other:
-        console.say("\n4. The model against a recording it did not make\n")
-        comparison = _compare(other, console)
-        console.say(f"\n{judgement(comparison)}")
-        result["other"] = comparison.as_dict()
-    console.say(f"\n{_farewell(bag, options.recording)}")
-    console.json(result)
-    return int(any(codes.values()))
-
-
-def drive(bag: Path, logs: Path, seconds: float, console: Console) -> dict[str, int]:
-    """Run the nodes for `seconds` of motion and end them; exit codes by name. PneumoError when one of them fails."""
-    steps = {"reference.shape": "steps", "reference.levels": LEVELS, "reference.hold": seconds / len(LEVELS)}
-    with Fleet(logs) as fleet:
-        fleet.start("recorder", "pneumo_ros.ros.recorder", {"output": str(bag)}, NAMESPACE)
-        fleet.start("simulator", "pneumo_ros.ros.simulator", SENSORS, NAMESPACE)
-        fleet.start("controller", "pneumo_ros.ros.controller", steps, NAMESPACE)
-        console.note("Starting the nodes")
-        _wait_for_motion(fleet, bag)
-        began = time.monotonic()
-        with console.progress("Recording") as progress:
-            while (passed := time.monotonic() - began) < seconds:
-                progress(passed / seconds)
-                fleet.wait(0.1)
-        return fleet.stop()
-
-
-def _wait_for_motion(fleet: Fleet, bag: Path) -> None:
-    """Until the first valve command is in the bag; PneumoError after a minute."""
-    from pneumo_ros.records import Bag
-
-    for _ in range(round(START / 0.25)):
-        fleet.wait(0.25)
-        try:
-            if Bag(bag).overview().counts.get(f"/{NAMESPACE}/valve/command"):
-                return
-        except DataError:  # nothing recorded yet
-            continue
-    raise PneumoError(f"no valve command within {START:g} s; what the nodes said is in {fleet.logs}")
+    return {"bag": bag, "exit_codes": codes, "own": own.as_dict()}
 
 
 def _recording(path: "Path | str") -> "Recording":
     from pneumo_ros.records import read_recording
 
     return read_recording(path)
-
-
-def motion(recording: "Recording", seconds: float) -> str:
-    """Chart of position and reference, and how near the piston came to each level."""
-    import numpy as np
-
-    assert recording.command_time is not None
-    begin = float(recording.command_time[0])  # the controller counts from its first measurement
-    hold = seconds / len(LEVELS)
-    shown = (recording.time >= begin) & (recording.time < begin + seconds)
-    passed, position = recording.time[shown] - begin, recording.position[shown]
-    step = np.minimum(passed // hold, len(LEVELS) - 1).astype(int)
-    drawing = chart(passed.tolist(), {"-": np.array(LEVELS)[step].tolist(), "*": position.tolist()}, "m")
-    ends = [float(position[step == k][-1]) for k in range(len(LEVELS))]
-    errors = ", ".join(f"{1e3 * abs(end - level):.2f}" for end, level in zip(ends, LEVELS, strict=True))
-    return f"{drawing}\n\nDistance from the reference at the end of each step: {errors} mm"
 
 
 def _compare(recording: "Recording", console: Console) -> "Comparison":
@@ -148,20 +119,6 @@ def _compare(recording: "Recording", console: Console) -> "Comparison":
     console.say()
     console.say(equations_text(comparison))
     return comparison
-
-
-def judgement(comparison: "Comparison") -> str:
-    """One sentence on a machine that is not the model."""
-    failing = [name.replace("_", " ") for name, one in comparison.equations.items() if not one.explained_by_noise]
-    if not failing:
-        return "Noise explains every equation: this machine is like the model."
-    names = f"{', '.join(failing[:-1])} and {failing[-1]}" if len(failing) > 1 else failing[0]
-    return f"Noise does not explain {names}: this machine has other parameters than the model, or other physics."
-
-
-def _farewell(bag: Path, other: str | None) -> str:
-    verbs = (f"compare {other or bag}", "effects", "--help")
-    return "\n".join((f"Bag and logs are in {bag.parent}. Next:", *(f"  {program()} {verb}" for verb in verbs)))
 
 
 def _next_folder(parent: Path) -> Path:

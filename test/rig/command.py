@@ -37,7 +37,12 @@ def _arguments() -> argparse.ArgumentParser:
         "--wear", type=float, default=0.05, help="share by which base parameters are off (default 0.05)"
     )
     parser.add_argument("--rough", action="store_true", help="add 0.3 N coloured force and 0.5 N friction texture")
-    parser.add_argument("--runs", nargs="+", metavar="PATTERN", help=f"runs to make, of {', '.join(ALL_RUNS)}")
+    parser.add_argument(
+        "--runs",
+        nargs="+",
+        metavar="PATTERN",
+        help=f"runs to make, of {', '.join(ALL_RUNS)}; a * takes runs to the ends only where the effect shows there",
+    )
     parser.add_argument("--quiet", action="store_true", help="say nothing of what is hidden")
     return parser
 
@@ -54,7 +59,8 @@ def _case(wanted: argparse.Namespace) -> Case:
 def _runs(case: Case, patterns: Sequence[str] | None) -> list[str]:
     if not patterns:
         return list(runs_for(case))
-    return [name for name in ALL_RUNS if any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
+    fit = [name for name in ALL_RUNS if name in patterns or name in runs_for(case) or not name.endswith("_ends")]
+    return [name for name in fit if any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

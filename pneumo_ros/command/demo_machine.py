@@ -1,0 +1,79 @@
+"""A machine that hides an effect, from recording it to the truth: nothing here reads what it hides before the end."""
+
+import json
+import shlex
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pneumo_ros.command.console import Console, program
+from pneumo_ros.command.hidden_machine import record_machine
+from pneumo_ros.command.revealing import judge
+from pneumo_ros.errors import PneumoError
+
+OTHER = "the simulator in {rig}, which shares no code with this package"
+OWN = """this package's own plant, as there is no other simulator here: except for what it hides, its equations are the
+model's, which is easier than any machine"""
+
+
+def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> dict[str, Any]:
+    """Record into `folder` a machine that hides an effect, compare, diagnose, reveal; returns what was said as JSON.
+
+    `rig` is the folder of a second simulator, or None. PneumoError when it or one of the verbs fails.
+    """
+    machine, truth, found = folder / "machine", folder / "truth.json", folder / "diagnosis.json"
+    console.say(
+        f"\n4. Another machine is recorded; it is worn, and hides an effect. Seed {seed} (repeat: --seed {seed})\n"
+    )
+    machine.mkdir()
+    record_machine(machine, truth, seed, rig, console)
+    console.say(f"Simulated by {OTHER.format(rig=rig) if rig else OWN}.")
+    console.say("\n5. Where does the model fail?\n")
+    _call(["compare", next((machine / "holdout").glob("holdout_steps*"))], console)
+    console.say("\n6. What is it that the model lacks? Fitted to the runs in train, judged by those in holdout\n")
+    wanted: list[str | Path] = ["--out", folder / "improved.yaml", "--report", folder / "report.html", "--json", found]
+    _call(["diagnose", machine / "train", "--holdout", machine / "holdout", *wanted], console)
+    console.say("\n7. The truth, read only now\n")
+    return _reveal(
+        json.loads(truth.read_text(encoding="utf-8")), json.loads(found.read_text(encoding="utf-8")), console
+    )
+
+
+def _call(arguments: Sequence[str | Path], console: Console) -> None:
+    """Run a verb as a user does, its command line shown; PneumoError when it fails."""
+    words = [str(word) for word in arguments]
+    console.say(f"$ {program()} {shlex.join(words)}")
+    silent = subprocess.DEVNULL if console.json_target == "-" else None
+    quiet = ["--quiet"] if console.quiet else []
+    with subprocess.Popen([sys.executable, "-m", "pneumo_ros", *words, *quiet], stdout=silent) as process:
+        try:
+            code = process.wait()
+        except KeyboardInterrupt:
+            process.wait()  # it was interrupted too, and may have something to write
+            raise
+    if code not in (0, 1):
+        raise PneumoError(f"{program()} {words[0]} ended with exit code {code}")
+
+
+def _reveal(truth: dict[str, Any], diagnosis: dict[str, Any], console: Console) -> dict[str, Any]:
+    """Say what was hidden, what was found, and whether that is right."""
+    hidden, added = truth["effects"], diagnosis["added"]
+    judgement = judge([h["effect"] for h in hidden], [(a["effect"], a["indistinguishable_from"]) for a in added])
+    console.say("Hidden: " + ", ".join(f"{h['shape']}, {h['size']:.4g} {h['unit']}" for h in hidden))
+    console.say("Found:  " + (", ".join(_found(addition) for addition in added) or "nothing"))
+    console.say(f"\n{judgement.sentence()}")
+    return {
+        "hidden": [{key: h[key] for key in ("effect", "shape", "size", "unit")} for h in hidden],
+        "added": added,
+        "right": judgement.right,
+        "judgement": judgement.word,
+    }
+
+
+def _found(addition: dict[str, Any]) -> str:
+    effect, rivals = str(addition["effect"]), addition["indistinguishable_from"]
+    values = [(key, p) for key, p in addition["parameters"].items() if p["std"] is not None]  # None: not determined
+    shown = ", ".join(f"{key} {p['value']:.4g} +- {1.96 * p['std']:.2g} {p['unit']}" for key, p in values[:4])
+    return effect + (f" ({shown})" if shown else "") + (f", or {' or '.join(rivals)}" if rivals else "")
