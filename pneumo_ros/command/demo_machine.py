@@ -13,6 +13,7 @@ from pneumo_ros.command.hidden_machine import record_machine
 from pneumo_ros.command.revealing import judge
 from pneumo_ros.errors import PneumoError
 
+INTERRUPTED = 130
 OTHER = "the simulator in {rig}, which shares no code with this package"
 OWN = """this package's own plant, as there is no other simulator here: except for what it hides, its equations are the
 model's, which is easier than any machine"""
@@ -53,6 +54,8 @@ def _call(arguments: Sequence[str | Path], console: Console) -> None:
         except KeyboardInterrupt:
             process.wait()  # it was interrupted too, and may have something to write
             raise
+    if code == INTERRUPTED:
+        raise KeyboardInterrupt
     if code not in (0, 1):
         raise PneumoError(f"{program()} {words[0]} ended with exit code {code}")
 
