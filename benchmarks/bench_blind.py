@@ -25,7 +25,7 @@ from typing import Any
 
 import blind_figures as figures
 import blind_tables as tables
-from blind_case import KINDS, ROOT, code_hash, drawn_strength
+from blind_case import KINDS, PARTNER, ROOT, code_hash, drawn_strength
 
 Job = tuple[str, int, float]  # kind, seed, strength
 Key = tuple[str, str, int, float]  # code and job
@@ -49,7 +49,12 @@ def wanted(options: argparse.Namespace) -> list[Job]:
     """The cases asked for, seed by seed, so that an interrupted run has some of every kind."""
     kinds = KINDS if options.kind == "all" else (options.kind,)
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    return [(kind, seed, options.strength or drawn_strength(kind, seed)) for seed in seeds for kind in kinds]
+    same = options.strength
+    return [
+        (kind, seed, drawn_strength(kind, seed) if same is None or kind in PARTNER.values() else same)
+        for seed in seeds
+        for kind in kinds
+    ]
 
 
 def stored(path: Path) -> dict[Key, dict[str, Any]]:

@@ -40,8 +40,10 @@ def code_hash() -> str:
 
 
 def drawn_strength(kind: str, seed: int) -> float:
-    """Share of full strength, uniform from a fifth."""
-    return float(np.random.default_rng([seed, KINDS.index(kind), 4]).uniform(WEAKEST, 1.0))
+    """Share of full strength, uniform from a fifth; 1 where nothing is hidden."""
+    if kind in PARTNER.values():
+        return 1.0
+    return round(float(np.random.default_rng([seed, KINDS.index(kind), 4]).uniform(WEAKEST, 1.0)), 3)
 
 
 def drawn_shape(seed: int, salt: int) -> str:
@@ -101,7 +103,7 @@ def found(outcome: Any) -> dict[str, Any]:
                 "effect": a.effect,
                 "group": a.indistinguishable_from,
                 "t": a.t,
-                "parameters": {key: (p.value, p.std) for key, p in a.parameters.items()},
+                "parameters": {k: (p.value, p.std if np.isfinite(p.std) else None) for k, p in a.parameters.items()},
             }
             for a in outcome.added
         ],

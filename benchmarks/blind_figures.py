@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from blind_case import PARTNER
 from blind_tables import EMPTY, HIDING, Result, Z, of_kind, rate
 
+Row = tuple[float, float, float | None]  # truth, value, standard deviation or None where it is not determined
 HELD_OUT, WITHIN, COVERED, SECONDS, MEGABYTES = 1.3, 0.05, 85.0, 60.0, 2000.0
 
 
 def parameters_table(results: Sequence[Result]) -> str:
     """Errors and intervals of the parameters of added effects, where rig and catalogue mean the same."""
-    rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
+    rows: dict[str, list[Row]] = defaultdict(list)
     for result in results:
         for added in result["added"]:
             for key, truth in result["true_parameters"].get(added["effect"], {}).items():
@@ -28,8 +29,8 @@ def parameters_table(results: Sequence[Result]) -> str:
     return "\n".join(lines)
 
 
-def _parameter(name: str, rows: Sequence[tuple[float, float, float]]) -> str:
-    known = [row for row in rows if row[2] != float("inf")]
+def _parameter(name: str, rows: Sequence[Row]) -> str:
+    known = [(truth, value, std) for truth, value, std in rows if std is not None]
     errors = [abs(value / truth - 1.0) for truth, value, _ in known if truth]  # a truth of zero has no relative error
     within = rate(sum(error <= WITHIN for error in errors), len(errors))
     held = rate(sum(abs(value - truth) <= Z * std for truth, value, std in known), len(known))

@@ -48,6 +48,11 @@ def of_kind(results: Iterable[Result], *kinds: str) -> list[Result]:
     return [result for result in results if result["kind"] in kinds]
 
 
+def in_band(results: Iterable[Result], low: float, high: float) -> list[Result]:
+    """Results of a band of strengths, full strength in the highest."""
+    return [r for r in results if low <= r["strength"] < high or r["strength"] == high == 1.0]
+
+
 def rates_table(results: Sequence[Result]) -> str:
     """Right, missed and false by kind and by strength."""
     columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first")
@@ -58,8 +63,7 @@ def rates_table(results: Sequence[Result]) -> str:
             continue
         lines.append(_rates(kind, some) + (f"   (target for right: {target:g} %)" if target else ""))
         for low, high in BANDS:
-            band = [r for r in some if low <= r["strength"] < high or r["strength"] == high == 1.0]
-            if band:
+            if band := in_band(some, low, high):
                 lines.append(_rates(f"  strength {low:g}-{high:g}", band))
     return "\n".join(lines)
 
@@ -102,6 +106,7 @@ def outside_table(results: Sequence[Result]) -> str:
     by_name = {"all": some}
     for result in some:
         by_name.setdefault(result["hidden"][0]["effect"], []).append(result)
+    by_name |= {f"  strength {low:g}-{high:g}": band for low, high in BANDS if (band := in_band(some, low, high))}
     for name, group in by_name.items():
         counts = (
             sum(r["verdict"] == "unknown_effect" and right_equation(r) for r in group),
@@ -147,6 +152,6 @@ def failures(results: Sequence[Result]) -> str:
         found = [f"{a['effect']}{[*a['group']] if a['group'] else ''}" for a in result["added"]]
         hidden = " + ".join(f"{h['shape']}={h['size']:.3g}" for h in result["hidden"]) or "nothing"
         said = f"{result['verdict']}, {', '.join(found) or 'nothing added'}"
-        lines.append(f"  {hidden}: {said}   [{result['kind']} {result['seed']} {result['strength']:.3f}]")
+        lines.append(f"  {hidden}: {said}   [{result['kind']} {result['seed']} {result['strength']:g}]")
     lines.append("  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH, the words in brackets")
     return "\n".join(lines)
