@@ -120,7 +120,8 @@ def main() -> int:
         counts = Counter(one["kind"] for one in results)
         print(f"{len(results)} cases: {', '.join(f'{kind} {counts[kind]}' for kind in KINDS if counts[kind])}")
         for table in TABLES:
-            print(f"\n{table(results)}")
+            if len((text := table(results)).splitlines()) > 1:  # more than its head
+                print(f"\n{text}")
     if broken:
         print("\nfailed\n  " + "\n  ".join(broken))
     return int(bool(broken))

@@ -103,7 +103,7 @@ def outside_table(results: Sequence[Result]) -> str:
     columns = ("flagged as unknown", "adequate", "look-alike added", "remainder shown")
     lines = [f"{'outside the catalogue':24s}" + "".join(f"{name:>22s}" for name in columns)]
     some = of_kind(results, "outside")
-    by_name = {"all": some}
+    by_name = {"all": some} if some else {}
     for result in some:
         by_name.setdefault(result["hidden"][0]["effect"], []).append(result)
     by_name |= {f"  strength {low:g}-{high:g}": band for low, high in BANDS if (band := in_band(some, low, high))}
@@ -153,5 +153,6 @@ def failures(results: Sequence[Result]) -> str:
         hidden = " + ".join(f"{h['shape']}={h['size']:.3g}" for h in result["hidden"]) or "nothing"
         said = f"{result['verdict']}, {', '.join(found) or 'nothing added'}"
         lines.append(f"  {hidden}: {said}   [{result['kind']} {result['seed']} {result['strength']:g}]")
-    lines.append("  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH, the words in brackets")
+    if len(lines) > 1:
+        lines.append("  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH, the words in brackets")
     return "\n".join(lines)
