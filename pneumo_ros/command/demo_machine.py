@@ -4,7 +4,7 @@ import json
 import shlex
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,16 +34,17 @@ def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> 
     console.say("\n5. Where does the model fail?\n")
     _call(["compare", next((machine / "holdout").glob("holdout_steps*"))], console)
     console.say("\n6. What is it that the model lacks? Fitted to the runs in train, judged by those in holdout\n")
-    wanted: list[str | Path] = ["--out", folder / "improved.yaml", "--report", folder / "report.html", "--json", found]
-    _call(["diagnose", machine / "train", "--holdout", machine / "holdout", *wanted], console)
+    written = {"--out": folder / "improved.yaml", "--report": folder / "report.html", "--json": found}
+    options = [word for pair in written.items() for word in pair]
+    _call(["diagnose", machine / "train", "--holdout", machine / "holdout", *options], console, written.values())
     console.say("\n7. The truth, read only now\n")
     return _reveal(
         json.loads(truth.read_text(encoding="utf-8")), json.loads(found.read_text(encoding="utf-8")), console
     )
 
 
-def _call(arguments: Sequence[str | Path], console: Console) -> None:
-    """Run a verb as a user does, its command line shown; PneumoError when it fails."""
+def _call(arguments: Sequence[str | Path], console: Console, written: Iterable[Path] = ()) -> None:
+    """Run a verb as a user does, its command line shown; PneumoError when it fails, or does not write what it should."""
     words = [str(word) for word in arguments]
     console.say(f"$ {program()} {shlex.join(words)}")
     silent = subprocess.DEVNULL if console.json_target == "-" else None
@@ -56,7 +57,7 @@ def _call(arguments: Sequence[str | Path], console: Console) -> None:
             raise
     if code == INTERRUPTED:
         raise KeyboardInterrupt
-    if code not in (0, 1):
+    if code not in (0, 1) or not all(path.exists() for path in written):  # Python's own failures end with 1 too
         raise PneumoError(f"{program()} {words[0]} ended with exit code {code}")
 
 
