@@ -44,7 +44,7 @@ def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> 
 
 
 def _call(arguments: Sequence[str | Path], console: Console, written: Iterable[Path] = ()) -> None:
-    """Run a verb as a user does, its command line shown; PneumoError when it fails, or does not write what it should."""
+    """Run a verb as a user does, its command line shown; PneumoError when it fails or does not write its files."""
     words = [str(word) for word in arguments]
     console.say(f"$ {program()} {shlex.join(words)}")
     silent = subprocess.DEVNULL if console.json_target == "-" else None
