@@ -6,13 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
+from pneumo_ros.diagnose.verdicts import root_mean_square
 from pneumo_ros.discover.basefit import base_fit
 from pneumo_ros.discover.hypothesis import cluster_robust, family_scales, weights
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.search import Found, Progress, Search, Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import UsageError
+from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -42,19 +45,23 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     """Judge what a search found by one-second windows of the held-out runs."""
     held = search.held.runs
     models = [search.start, found.base, *(step.model for step in found.steps[1:])]
-    if models[-1] is not found.model:
+    if models[-1].effects != found.model.effects:
         models.append(found.model)
-    course, comparisons = [], []
+    models[-1] = found.model
+    course, comparisons = [], {}
     for k, model in enumerate(models):
         tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
-        comparisons.append(compare(model, held, HORIZON))
-        course.append((_label(models, k), window_error(comparisons[-1])))
+        if k in (1, len(models) - 1):
+            comparisons[k] = compare(model, held, HORIZON)
+            course.append((_label(models, k), window_error(comparisons[k])))
+        else:
+            course.append((_label(models, k), predicted_error(model, held)))
     values = deviations(search, found.model)
     added = tuple(
         _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
         for k, step in enumerate(s for s in found.steps if s.added)
     )
-    before, after = comparisons[1], comparisons[-1]
+    before, after = comparisons[1], comparisons[len(models) - 1]
     unexplained = remains(before, after)
     return Outcome(
         verdict=verdict(added, unexplained),
@@ -86,6 +93,15 @@ def _label(models: Sequence[Model], k: int) -> str:
 def window_error(comparison: Comparison) -> float:
     """Root mean square over signals and runs of window error over noise: 1 where only noise is left."""
     ratios = [error.ratio for run in comparison.runs for error in run.error.values()]
+    return float(np.sqrt(np.mean(np.square(ratios))))
+
+
+def predicted_error(model: Model, runs: Sequence[Run]) -> float:
+    """The same for a model whose comparison is not wanted."""
+    ratios = []
+    for run in runs:
+        noise = run_noise(run)
+        ratios += [root_mean_square(e) / noise[n] for n, e in predict(model, run, HORIZON).errors.items()]
     return float(np.sqrt(np.mean(np.square(ratios))))
 
 

@@ -74,7 +74,7 @@ class Search:
                 if step.added is None or k == MOST:
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                model = self.refit(self.extended(model, step.added.hypothesis))
+                model = self.polish(self.refit(self.extended(model, step.added.hypothesis)))
             self.progress(0.85, "looking at breakaways and reversals")
             model, last = self.slip_round(model, screened)
             if last is not None:
@@ -129,7 +129,10 @@ class Search:
         from pneumo_ros.discover.diagnosis import deviations
 
         made = slips(model, self.train.runs, self.held.runs)
-        return model if made is None else with_values_of(model, polished(*made, deviations(self, model)))
+        if made is None:
+            return model
+        added = [name for name in model.effects if name not in self.start.effects]
+        return with_values_of(model, polished(*made, deviations(self, model), added))
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
@@ -140,11 +143,8 @@ class Search:
             return model, None
         alone, found = made
         known = deviations(self, model)
-        added = [name for name in model.effects if name not in self.start.effects]
-        alone = polished(alone, found, known, added)
         train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
         self.quality = (float(np.median(train)), float(np.median(held)))
-        model = with_values_of(model, alone)
         if max(self.quality) < POOR:
             return model, None
         tried = try_candidates(alone, found, blind(screened, alone), known)

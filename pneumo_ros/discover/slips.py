@@ -29,6 +29,7 @@ FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_sti
 POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
 BLIND = 10.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
 FEWEST = 12  # events
+TRIED = 3  # candidates, those the equations see least
 FEW = 3  # parameters: the events are too few to fit more
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
 _TAIL = 4.0
@@ -139,11 +140,8 @@ def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
     for h in screened:
         spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
         seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
-    return [
-        name
-        for name, t in seen.items()
-        if name in builds and moves(alone, name) and len(builds[name]) <= FEW and t < BLIND
-    ]
+    found = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW and seen[n] < BLIND]
+    return sorted(found, key=lambda name: seen[name])[:TRIED]
 
 
 def share_removed(before: Array, after: Array) -> float:

@@ -23,6 +23,7 @@ MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
 DECOYS = 12
+FEW_RUNS = 3
 NOISE = {"breakaway": 0.25}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
 
@@ -155,6 +156,15 @@ def _parts(base: BaseFit, h: Hypothesis) -> tuple[Array, Array, Array]:
     return K * w[:, None], w * h.residual, ridge
 
 
+def _folds(evidence: Evidence) -> list[NDArray[np.bool_]]:
+    """Which residuals to leave out together: a run each; quarters in time of each, of less than three runs."""
+    if len(evidence.runs) >= FEW_RUNS:
+        return [evidence.run == k for k in range(len(evidence.runs))]
+    ends = np.array([run.time[-1] for run in evidence.runs])
+    part = np.minimum((4.0 * evidence.time / ends[evidence.run]).astype(int), 3) + 4 * evidence.run
+    return [part == k for k in range(4 * len(evidence.runs))]
+
+
 def stable(base: BaseFit, h: Hypothesis) -> bool:
     """Whether the sizes keep their sign and half their value, whichever run is left out (linearised)."""
     A, e, ridge = _parts(base, h)
@@ -163,8 +173,7 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
     if not sizes:
         return True
     u = h.u[sizes]
-    for run in range(len(base.evidence.runs)):
-        own = base.evidence.run == run
+    for own in _folds(base.evidence):
         left = normal - A[own].T @ A[own] + np.diag(ridge)
         shift = np.linalg.solve(left, A[own].T @ e[own])[p:][
             sizes
