@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from pneumo_ros.identify.shooting import Solution, Unknowns
+from pneumo_ros.identify.problem import Unknowns
+from pneumo_ros.identify.shooting import Solution
+from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 _RESAMPLES = 400
 
@@ -30,11 +33,31 @@ class Estimate:
         return self.std < 0.5 * self.prior
 
 
+@dataclass(frozen=True)
+class Refit:
+    """The refitted model, an estimate per free parameter, their correlation, and the course of the cost.
+
+    `starts` (segments, states) are the fitted initial states of the segments that were used, `chosen` (segments,) which
+    of all they are; another refit may begin with them.
+    """
+
+    model: Model
+    estimates: dict[str, Estimate]
+    correlation: Array  # (free, free)
+    costs: tuple[float, ...]
+    segments: int
+    left_out: int  # segments that fit far worse than the rest
+    starts: Array
+    chosen: Index
+
+
 def estimates(unknowns: Unknowns, solution: Solution) -> tuple[dict[str, Estimate], Array]:
     """Estimates by name and correlation (free, free), from a bootstrap over segments of the linearised problem."""
     active, theta, prior = solution.active, solution.theta, unknowns.prior
     matrices, gradients = solution.equations.matrix[active], solution.equations.gradient[active]
-    shifts = _bootstrap(matrices, gradients - gradients.mean(0))
+    # what the next step would take away is no scatter; segments that tell nothing keep a gradient of nothing
+    rest = np.linalg.lstsq(matrices.sum(0), gradients.sum(0), rcond=1e-12)[0]
+    shifts = _bootstrap(matrices, gradients - matrices @ rest)
     # what only the prior tells does not change when segments are drawn anew: the prior's own deviation counts there
     posterior = np.sqrt(np.diag(np.linalg.inv(matrices.sum(0) + np.eye(len(theta)))))
     drawn = np.minimum(shifts.std(0) * _small_sample(len(matrices)), 1.0)  # no data make known less than was known

@@ -8,23 +8,20 @@ simulations of one iteration run as lanes.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError, UsageError
-from pneumo_ros.identify.estimates import Estimate, estimates
+from pneumo_ros.identify.approach import approach
+from pneumo_ros.identify.estimates import Estimate, Refit, estimates
+from pneumo_ros.identify.problem import Unknowns
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.segments import Segments, cut
-from pneumo_ros.identify.shooting import Progress, Shooting, Unknowns
-from pneumo_ros.identify.start import fit_starts
+from pneumo_ros.identify.shooting import Progress, Shooting
 from pneumo_ros.plant import Model
 
 __all__ = ["Estimate", "Refit", "default_free", "refit", "refit_segments"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 SEGMENT = 0.5  # s
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
@@ -32,24 +29,6 @@ PRIOR = 0.05  # relative standard deviation of a parameter known to a few per ce
 # What a scale, a ruler or a table tells better than a motion: fixed unless asked for.
 FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
 FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
-
-
-@dataclass(frozen=True)
-class Refit:
-    """The refitted model, an estimate per free parameter, their correlation, and the course of the cost.
-
-    `starts` (segments, states) are the fitted initial states of the segments that were used, `chosen` (segments,) which
-    of all they are; another refit may begin with them.
-    """
-
-    model: Model
-    estimates: dict[str, Estimate]
-    correlation: Array  # (free, free)
-    costs: tuple[float, ...]
-    segments: int
-    left_out: int  # segments that fit far worse than the rest
-    starts: Array
-    chosen: Index
 
 
 def default_free(model: Model) -> tuple[str, ...]:
@@ -104,13 +83,15 @@ def refit_segments(
     count = max(round(share * len(segments)), 1)
     chosen = np.unique(np.linspace(0, len(segments) - 1, count).round().astype(np.int64))
     used = segments.pick(chosen)
-    model = model.with_parameters(dict(zip(unknowns.names, unknowns.begin.tolist(), strict=True)))
-    states = _warm(model, used, chosen, start) if start else used.seated(model)
-    solution = Shooting(model, unknowns, used, threads).solve(states, progress or (lambda share, text: None))
+    tell = progress or (lambda share, text: None)
+    first = Shooting(model, unknowns, used, threads).begin_cost(used.seated(model))
+    near = approach(model, unknowns, used, chosen, start, threads, lambda part, text: tell(0.3 * part, text))
+    shooting = Shooting(model, near.unknowns, near.segments, threads)
+    solution = shooting.solve(near.states, lambda part, text: tell(0.3 + 0.7 * part, text), near.fresh)
     found, correlation = estimates(unknowns, solution)
     return Refit(
         model.with_parameters(dict(zip(unknowns.names, solution.theta.tolist(), strict=True))),
-        found, correlation, solution.costs, len(used), int(np.sum(~solution.active)), solution.states, chosen,
+        found, correlation, (first, *solution.costs), len(used), int(np.sum(~solution.active)), solution.states, chosen,
     )  # fmt: skip
 
 
@@ -133,28 +114,9 @@ def _unknowns(model: Model, names: tuple[str, ...], priors: Mapping[str, float],
     specs = [model.specification(name) for name in names]
     return Unknowns(
         names=names,
-        begin=np.array([known[n].value if n in known else model[n] for n in names]),
+        begin=np.array([known[n].before if n in known else model[n] for n in names]),
         centre=np.array([known[n].before if n in known else model[n] for n in names]),
         prior=np.array(prior),
         low=np.array([s.low for s in specs]),
         high=np.array([s.high for s in specs]),
     )
-
-
-def _warm(model: Model, segments: Segments, chosen: Index, start: Refit) -> Array:
-    """Starts (segments, states) as an earlier refit left them, fitted where it had none.
-
-    States that its model lacked begin as guessed, and sensors read there what they read before.
-    """
-    before = start.model
-    known = np.isin(chosen, start.chosen)
-    old = start.starts[np.searchsorted(start.chosen, chosen[known])]
-    shared = [s for s in model.states if s in before.states]
-    states: Array = segments.seated(model)
-    part = segments.pick(np.flatnonzero(known))
-    moved = states[known]
-    moved[:, [model.states.index(s) for s in shared]] = old[:, [before.states.index(s) for s in shared]]
-    states[known] = part.seated(model, moved, part.read(before, old)[0])
-    if not known.all():
-        states[~known] = fit_starts(model, segments.pick(np.flatnonzero(~known)))
-    return states

@@ -36,20 +36,21 @@ def start_states(model: Model, run: Run, at: Index) -> Array:
     return result
 
 
-def fit_starts(model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS) -> Array:
+def fit_starts(
+    model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS, threads: int = 1
+) -> Array:
     """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself.
 
     `begin` (segments, states) is where the search begins, by default the guesses.
     """
     x = segments.seated(model) if begin is None else begin.copy()
-    damping = np.full(len(x), 1e-3)
-    residual = _residuals(model, segments, x)[0]
+    coarse, damping = segments.coarser(), np.full(len(x), 1e-3)
+    residual = _residuals(model, segments, x, threads)[0]
     active = np.arange(len(x))
     for _ in range(iterations):
-        part, r = segments.pick(active), residual[active]
-        candidate = x[active] + _move(model, part, x[active], r, damping[active])
-        tried = _residuals(model, part, candidate)[0]
-        cost, less = np.sum(r**2, axis=1), np.sum(tried**2, axis=1)
+        candidate = x[active] + _move(model, coarse.pick(active), x[active], residual[active], damping[active], threads)
+        tried = _residuals(model, segments.pick(active), candidate, threads)[0]
+        cost, less = np.sum(residual[active] ** 2, axis=1), np.sum(tried**2, axis=1)
         better = less < cost
         x[active[better]], residual[active[better]] = candidate[better], tried[better]
         damping[active] *= np.where(better, 0.2, 10.0)
@@ -59,9 +60,10 @@ def fit_starts(model: Model, segments: Segments, begin: Array | None = None, ite
     return x
 
 
-def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: Array) -> Array:
+def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: Array, threads: int) -> Array:
     """Levenberg-Marquardt step (segments, states) from states x with residuals (segments, residuals)."""
-    jacobian = np.moveaxis((_residuals(model, segments, segments.probes(x)) - residual) / PROBE, 0, 2)
+    lanes = _residuals(model, segments, np.concatenate([x, segments.probes(x)]), threads)
+    jacobian = np.moveaxis((lanes[1:] - lanes[0]) / PROBE, 0, 2)
     normal = np.swapaxes(jacobian, 1, 2) @ jacobian
     gradient = np.einsum("wrs,wr->ws", jacobian, residual)
     size = np.sqrt(np.einsum("wss->ws", normal))  # at least 1, by the prior
@@ -69,6 +71,7 @@ def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: 
     return np.asarray(-np.linalg.solve(damped, (gradient / size)[:, :, None])[:, :, 0] / size * segments.scale)
 
 
-def _residuals(model: Model, segments: Segments, states: Array) -> Array:
+def _residuals(model: Model, segments: Segments, states: Array, threads: int) -> Array:
     """(copies, windows, samples * signals + states): whitened errors and distances from the guess."""
-    return np.concatenate([segments.residuals(model, states), segments.from_guess(model, states)], axis=2)
+    errors = segments.residuals(model, states, threads=threads)
+    return np.concatenate([errors, segments.from_guess(model, states)], axis=2)

@@ -349,7 +349,7 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
 
 
 def _voltages(voltage: ArrayLike) -> Array:
-    held = np.array(voltage, dtype=float, ndmin=1)
+    held = np.atleast_1d(np.asarray(voltage, dtype=float))  # no copy: fits call this often, with minutes of it
     if held.ndim > 1 or not np.isfinite(held).all():
         raise UsageError(f"voltage of shape {held.shape} must be one row of finite numbers [V]")
     return held
