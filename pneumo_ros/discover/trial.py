@@ -24,7 +24,7 @@ MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes seve
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
 DECOYS = 12
 FEW_RUNS = 3
-NOISE = {"breakaway": 0.25}  # mean square that noise alone leaves, where it is not 1: their spread is generous
+NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
 
 @dataclass(frozen=True)
