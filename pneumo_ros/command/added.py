@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.console import columns
 from pneumo_ros.command.diagnosed import added, by_signal, listed, moved
 from pneumo_ros.command.diagnosis_json import equations_dict, value_dict
-from pneumo_ros.diagnose.moved import estimates_dict
 from pneumo_ros.diagnose.wording import EQUATIONS, times
 
 if TYPE_CHECKING:
@@ -18,6 +17,7 @@ HEADS = {"given": "as given", "before": "refitted", "after": "with it", "noise":
 
 def adding_dict(found: "Adding") -> dict[str, Any]:
     """Errors are over windows of one second; `held_out` says whether on runs that took no part in the fit."""
+    from pneumo_ros.diagnose.moved import estimates_dict
     from pneumo_ros.discover.diagnosis import noise_levels, signal_errors, window_error
 
     before, after = window_error(found.before), window_error(found.after)

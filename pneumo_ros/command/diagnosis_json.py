@@ -4,8 +4,6 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.diagnose.moved import estimates_dict
-
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison
     from pneumo_ros.discover.outcome import Addition, Outcome, Ranked, Unexplained
@@ -23,6 +21,8 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
 
     estimates: of all that is free in the final model; experiment: what to record next, "" for nothing.
     """
+    from pneumo_ros.diagnose.moved import estimates_dict
+
     return {
         "schema_version": SCHEMA_VERSION,
         "model": outcome.model.name,

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from pneumo_ros.command.console import Console
 from pneumo_ros.command.recordings import expanded, read_expanded
 from pneumo_ros.errors import UsageError
@@ -71,6 +69,8 @@ def read_roles(
     train: dict[str, bool], held: dict[str, bool], options: argparse.Namespace, console: Console, model: "Model"
 ) -> "tuple[list[Run], list[Run], dict[str, str]]":
     """The runs to fit, those to judge by, and what was passed over, as `read_expanded`; UsageError for copies."""
+    import numpy as np  # slow; --help does without
+
     fitted, passed = read_expanded(train, options, console, model)
     judging, more = read_expanded(held, options, console, model) if held else ([], {})
     for run in judging:
