@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.identify.guess import HALF_WIDTH, smoothed
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.sensors import driven
 from pneumo_ros.identify.smooth import noise_gain
 from pneumo_ros.plant import Model
 
@@ -32,12 +33,12 @@ class Along:
 def along(model: Model, run: Run) -> Along:
     """Drive the model's own states (bristles, spool) along the measured ones and look at its signals."""
     frame = smoothed(run).frame[:, : 2 if model.force_driven else 4]
-    states, _ = model.follow(frame, run.held, model.state()[frame.shape[1] :], sample_time=run.sample_time)
+    states, _ = driven(model, frame, run)
     held = np.append(run.held, run.held[-1])
     spread = run_noise(run)["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
     return Along(
         run=run,
-        velocity=frame[:, 1],
+        velocity=states[:, 1],
         rest_below=max(_SLOWEST, _DEVIATIONS * spread),
         input=held,
         seen=model.outputs(states, held, sample_time=run.sample_time),

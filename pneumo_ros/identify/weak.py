@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from pneumo_ros.identify.bump import Bump
 from pneumo_ros.identify.guess import smoothed
 from pneumo_ros.identify.noise import noise_level, run_noise
-from pneumo_ros.identify.run import PARTS, Run, check_position
+from pneumo_ros.identify.run import Run, check_position
+from pneumo_ros.identify.sensors import driven
 from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
 
@@ -78,19 +79,18 @@ def force_error(model: Model, run: Run) -> float:
     states, claimed = _along(model, run)
     mass = model["piston.mass"]
     drive = np.append(run.held, run.held[-1]) if model.force_driven else model.outputs(states)["drive"]
-    error = mass * (bump.apply(bump.second, run.position) - bump.apply(bump.phi, claimed[:, 1]))
+    error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
     inside = bump.apply(np.ones(bump.width), (~run.measured).astype(float)) < 0.5
     return float(100.0 * np.linalg.norm(error[inside]) / np.linalg.norm(bump.apply(bump.phi, drive)[inside]))
 
 
 def _along(model: Model, run: Run) -> tuple[Array, Array]:
-    """States and claimed derivatives (n, states) along the measured signals."""
+    """States and claimed derivatives (n, states) along the measured signals, what sensors do taken back."""
     frame = smoothed(run).frame[:, : 2 if model.force_driven else 4].copy()
     for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
         if column < frame.shape[1]:
             frame[:, column] = signal
-    rest = model.state()[frame.shape[1] :]
-    states, mean = model.follow(frame, run.input, rest, sample_time=run.sample_time, parts=PARTS)
+    states, mean = driven(model, frame, run)
     # the mean of the intervals on both sides of a sample: a sum over samples is then the integral, input steps and all
     return states, 0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0))
 
@@ -98,7 +98,8 @@ def _along(model: Model, run: Run) -> tuple[Array, Array]:
 def _momentum(model: Model, run: Run, states: Array, claimed: Array, noise: dict[str, float]) -> Residual:
     bump = Bump.of(MOMENTUM_WINDOW, run.sample_time)
     mass = model["piston.mass"]
-    value = mass * (bump.apply(bump.second, run.position) - bump.apply(bump.phi, claimed[:, 1]))
+    moving = mass + model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"][bump.centres(len(run))]
+    value = moving * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
     ones = np.ones(len(run))
     by_velocity = _sensitivity(model, run, states, 1, 1e-3)[:, 1]
     parts = [noise["position_m"] * mass * bump.noise([(bump.second, ones), (bump.first, by_velocity)])]
@@ -125,7 +126,7 @@ def _chamber(model: Model, run: Run, states: Array, claimed: Array, noise: dict[
     column = model.states.index(f"p_{chamber}")
     gamma = model["air.heat_capacity_ratio"]
     slope = model["piston.area_a"] if chamber == "a" else -model["piston.area_b"]
-    p, volume = states[:, column], model[f"chambers.volume_{chamber}"] + slope * run.position
+    p, volume = states[:, column], model[f"chambers.volume_{chamber}"] + slope * states[:, 0]
     rate = claimed[:, column] / p + gamma * slope * states[:, 1] / volume
     steep = _sensitivity(model, run, states, column, 100.0)[:, column] / p - claimed[:, column] / p**2
     content = p * volume / (gamma * model["air.gas_constant"] * model["air.temperature"])  # kg per unit of L
