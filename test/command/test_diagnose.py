@@ -26,6 +26,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def done(folder: Path) -> Done:
     """The whole command as a user types it, and its JSON."""
     options = ["--holdout", "runs/holdout_sweep", "--out", "found.yaml", "--json", "found.json"]
+    options += ["--report", "page.html"]
     line = [sys.executable, "-m", "pneumo_ros", "diagnose", "runs", *options]
     found = subprocess.run(line, cwd=folder, capture_output=True, text=True)
     assert found.returncode == 0, found.stderr
@@ -69,6 +70,13 @@ def test_the_json_is_as_promised(done: Done) -> None:
     assert data["unexplained"] is None
     assert not data["interrupted"]
     assert (data["train"], data["held_out"]) == (["steps", "sweep"], ["holdout_sweep"])
+
+
+def test_the_report_repeats_it(folder: Path, done: Done) -> None:
+    page = (folder / "page.html").read_text(encoding="utf-8")
+    assert page.startswith("<!doctype html>")
+    assert "--holdout runs/holdout_sweep" in page
+    assert "Report written to page.html" in done[0].stderr
 
 
 def test_what_was_refused_comes_with_reasons(done: Done) -> None:
