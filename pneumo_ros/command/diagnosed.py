@@ -121,7 +121,9 @@ def interval(one: Mapping[str, Any]) -> str:
 def waterfall(result: Mapping[str, Any]) -> str:
     """The held-out error step by step, and by signal."""
     rows = [(f"Held-out error over {result['horizon_s']:g} s", "noise floors")]
-    rows += [(f"  {step['model']}", number(step["holdout_error"])) for step in result["course"]]
+    for step in result["course"]:
+        what = step["model"] if step["model"].strip(" +") else "friction refitted at breakaways"
+        rows.append((f"  {what}", number(step["holdout_error"])))
     heads = {"before": "refitted", "after": "final", "noise": "noise"}
     return columns(rows, right=(1,)) + "\n\n" + by_signal(result["holdout"], heads)
 
