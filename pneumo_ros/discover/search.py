@@ -1,6 +1,6 @@
 """The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +13,10 @@ from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything, hube
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.trial import Trial, put_on_trial, rivals
+from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.refit import default_free
 from pneumo_ros.identify.run import Run
+from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -23,6 +25,8 @@ Progress = Callable[[float, str], None]
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 FINALISTS = 4  # candidates that are fitted to all training runs
+HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
+BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 MOST = 4  # effects added
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -66,19 +70,29 @@ class Search:
         self.progress(0.05, "refitting what the model has")
         base = self.polish(self.refit(self.start))
         model, steps = base, list[Step]()
+        before, banned = windowed(base, self.held.runs), dict[str, str]()
         try:
-            for k in range(MOST + 1):
+            screened: list[Hypothesis] = []
+            while len(steps) <= MOST + len(banned):
+                k = len(model.effects) - len(base.effects)
                 self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
-                step, screened = self.round(model)
-                steps.append(step)
+                step, screened = self.round(model, banned)
                 if step.added is None or k == MOST:
+                    steps.append(replace(step, added=None))
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                model = self.polish(self.refit(self.extended(model, step.added.hypothesis)))
+                new = self.polish(self.refit(self.extended(model, step.added.hypothesis)))
+                after = windowed(new, self.held.runs)
+                if not step.added.absorbed and not pays(before, after):
+                    banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
+                    continue
+                steps.append(step)
+                model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
-            model, last = self.slip_round(model, screened)
-            if last is not None:
-                steps[-1:] = [last, replace(steps[-1], model=model)] if last.added else [last]
+            longer, last = self.slip_round(model, screened)
+            if last is not None and last.added is not None and pays(before, windowed(longer, self.held.runs)):
+                steps[-1:] = [last, replace(steps[-1], model=longer)]
+                model = longer
         except KeyboardInterrupt:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
@@ -91,6 +105,7 @@ class Search:
         for n, shift, p in zip(names, h.shift, prior, strict=True):
             s = model.specification(n)
             moved[n] = min(max(model[n] + shift * p, s.low), s.high)
+        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
         return model.with_parameters(moved).with_effects([*model.effects, h.name], h.values)
 
     def priors(self, model: Model) -> tuple[tuple[str, ...], Array, dict[str, float]]:
@@ -159,7 +174,7 @@ class Search:
             self.quality = (float(np.median(chosen.train)), float(np.median(chosen.held)))
         return model, step
 
-    def round(self, model: Model) -> tuple[Step, list[Hypothesis]]:
+    def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fits(model)
         part = self.worst(base)
@@ -175,6 +190,7 @@ class Search:
         trials = put_on_trial(
             base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects
         )
+        trials = [replace(trial, refused=banned.get(trial.name, "")) for trial in trials]
         good = [trial for trial in trials if not trial.objections]
         best = good[0] if good else None
         others = rivals(base, held, best, trials) if best else []
@@ -195,6 +211,22 @@ class Search:
                 left -= float(e.runs[i].time[-1])
         part, rows = e.only(runs)
         return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
+
+
+def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
+    """By signal, the usual error over noise in windows of 1 s: the geometric mean; no single breakaway decides it."""
+    logs: dict[str, list[Array]] = {}
+    for run in runs:
+        noise = run_noise(run)
+        for name, error in predict(model, run, HORIZON).errors.items():
+            size = np.sqrt(np.nanmean(np.minimum(np.abs(error / noise[name]), FARTHEST) ** 2, axis=1))
+            logs.setdefault(name, []).append(np.log(np.maximum(size, 1e-3)))
+    return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}
+
+
+def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of some signal got better by a twentieth and none worse by a tenth."""
+    return any(after[n] <= BETTER * before[n] for n in before) and all(after[n] <= WORSE * before[n] for n in before)
 
 
 def with_values_of(model: Model, other: Model) -> Model:

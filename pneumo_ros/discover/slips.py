@@ -28,9 +28,11 @@ Rows = NDArray[np.int64]
 FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
 POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
 BLIND = 10.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
+SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 FEWEST = 12  # events
 TRIED = 3  # candidates, those the equations see least
 FEW = 3  # parameters: the events are too few to fit more
+SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
 _TAIL = 4.0
 _SIZES = (0.3, 1.0, 2.5)
@@ -82,7 +84,8 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
     prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
         if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
-            prior[name] = max(3.0 * known[name] if np.isfinite(known[name]) else 0.0, LOOSE * abs(alone[name]))
+            sure = known[name] < SURE * abs(alone[name])
+            prior[name] = known[name] if sure else LOOSE * abs(alone[name])
             names.append(name)
     new = refit_segments(alone, found.train(alone), names, prior).model
     before, after = (float(np.median(errors(m, found.train(m)))) for m in (alone, new))
@@ -163,7 +166,9 @@ def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, bas
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=z_train)
     sizes = [abs(x) for k, x in zip(effect, u, strict=True) if k.is_size and not k.logarithmic]
     gain = 1.0 - float(np.median(c.held) / np.median(base_held))
+    share = share_removed(base_held, c.held)
+    enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
     return Trial(
-        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True,
-        share_removed(base_held, c.held), first, 0.0, float(np.median(base_train) - np.median(c.train)),
+        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share, first, 0.0,
+        float(np.median(base_train) - np.median(c.train)), refused=enough,
     )  # fmt: skip

@@ -21,8 +21,10 @@ SPOILED = 0.05  # share by which no equation may get worse
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
+ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
 DECOYS = 12
+SLOW = 10.0
 FEW_RUNS = 3
 NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
@@ -41,6 +43,8 @@ class Trial:
     first: bool  # whether nothing was added before
     decoy: float  # the largest t that a copy of its trace shifted in time reaches
     score: float  # log likelihood over the base, training and held-out runs together
+    lag: float = np.inf  # samples, of an effect that delays
+    refused: str = ""  # why it was taken back after it had been added
 
     @property
     def name(self) -> str:
@@ -48,23 +52,28 @@ class Trial:
         return self.hypothesis.name
 
     @property
+    def slowness(self) -> float:
+        """Largest of its fading time constants in usual ones: unlike forces, times do not grow with a machine."""
+        h = self.hypothesis
+        times = [c for c in h.coordinates if c.is_size and c.name.endswith("time_constant")]
+        return max((h.values[c.name] / c.typical for c in times), default=0.0)
+
+    @property
     def absorbed(self) -> bool:
         """Whether base parameters stand in for it: the data cannot tell, but what is known of those parameters can."""
         h = self.hypothesis
-        return h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF and self.size >= MATERIAL and self.stable
+        indifferent = all(abs(gain) < GAIN_LEAST for gain in self.gain.values())
+        return indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
 
-    @property
-    def objections(self) -> tuple[str, ...]:
-        """Why it may not be added; empty when it may."""
-        h, found = self.hypothesis, list[str]()
-        if self.absorbed:
-            return ()
+    def _data_objections(self) -> list[str]:
+        """What the recordings say against it."""
+        h, found, most = self.hypothesis, list[str](), max(self.gain.values(), default=0.0)
         if h.t < T_LEAST:
             found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
         elif h.t < 1.5 * self.decoy:
             found.append(f"t is {h.t:.1f}, and its trace shifted in time reaches {self.decoy:.1f}")
-        if max(self.gain.values(), default=0.0) < GAIN_LEAST:
-            found.append(f"removes {100.0 * max(self.gain.values(), default=0.0):.1f} % on held-out runs")
+        if most < GAIN_LEAST:
+            found.append(f"removes {100.0 * most:.1f} % on held-out runs")
         elif self.z < Z_LEAST:
             found.append("its gain on held-out runs is within their scatter")
         worst = min(self.gain, key=lambda name: self.gain[name])
@@ -72,20 +81,33 @@ class Trial:
             found.append(f"makes {worst} {-100.0 * self.gain[worst]:.0f} % worse on held-out runs")
         if self.share < SHARE_LEAST[0 if self.first else 1]:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
+        return found
+
+    @property
+    def objections(self) -> tuple[str, ...]:
+        """Why it may not be added; empty when it may."""
+        h, found = self.hypothesis, [] if self.absorbed else self._data_objections()
         if self.size < MATERIAL:
             found.append(f"its size is {self.size:.2g} of the usual one")
-        ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if not c.is_size and _at_end(c, float(u))]
+        if self.slowness > SLOW:
+            found.append(f"its time constant is {self.slowness:.0f} times the usual one")
+        ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if _at_end(c, float(u))]
         if ends:
             found.append(f"{ends[0]} is at the end of its range")
+        if self.lag < 1.0:
+            found.append("its delay is less than a sample, which may be how the recording was timed")
+        if self.refused:
+            found.append(self.refused)
         if not self.stable:
             found.append("its size depends on which run is left out")
         return tuple(found)
 
 
 def _at_end(c: Coordinate, u: float) -> bool:
-    """Whether a shape sits on a bound, as one does that stands for something else."""
-    value = c.value(u)
-    return c.logarithmic and (value >= c.high * 0.999 or value <= c.low * 1.001)
+    """Whether a parameter sits on a bound, neither neutral nor usual, as one does that stands for something else."""
+    value, margin = c.value(u), 1e-3 * abs(c.typical)
+    near = [end for end in (c.low, c.high) if abs(value - end) <= margin]
+    return bool(near) and near[0] not in (c.neutral, c.typical)
 
 
 def equation_of(name: str) -> str:
@@ -209,6 +231,11 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
     return largest
 
 
+def _lag(h: Hypothesis, sample_time: float) -> float:
+    delays = [value for name, value in h.values.items() if name.endswith(".delay")]
+    return min(delays) / sample_time if delays else np.inf
+
+
 def put_on_trial(
     base: BaseFit,
     held: BaseFit,
@@ -234,6 +261,7 @@ def put_on_trial(
                 first=first,
                 decoy=decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
                 score=h.likelihood + log_likelihood(held.evidence, r) - reference,
+                lag=_lag(h, base.evidence.runs[0].sample_time),
             )
         )
     return sorted(found, key=lambda trial: -trial.score)
@@ -244,6 +272,8 @@ def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -
     found = []
     for other in others:
         if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
+            continue
+        if other.score < ALIKE * best.score:
             continue
         z = pooled_advantage(
             [
