@@ -12,7 +12,7 @@ from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything, huber, log_likelihood, missing
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
-from pneumo_ros.discover.trial import Trial, put_on_trial, rivals
+from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.refit import default_free
 from pneumo_ros.identify.run import Run
@@ -26,6 +26,7 @@ SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 FINALISTS = 4  # candidates that are fitted to all training runs
 HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
+EXPLAINED = 0.8  # share of what noise does not explain in an equation
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 MOST = 4  # effects added
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
@@ -61,6 +62,7 @@ class Search:
     ) -> None:
         self.progress = progress or (lambda share, text: None)
         self.start = model
+        self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
         self.whole = everything(model, missing(model))  # one kernel for all that may be added
         self.quality = (float("nan"), float("nan"))  # median error of slips, training and held-out
         self.train, self.held = Evidence(model, train), Evidence(model, held)
@@ -83,7 +85,7 @@ class Search:
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                 new = self.polish(self.refit(self.extended(model, step.added.hypothesis)))
                 after = windowed(new, self.held.runs)
-                if not step.added.absorbed and not pays(before, after):
+                if not self.beyond_doubt(step.added) and not pays(before, after):
                     banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
                     continue
                 steps.append(step)
@@ -97,6 +99,14 @@ class Search:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
         return Found(base, model, tuple(steps))
+
+    @staticmethod
+    def beyond_doubt(trial: Trial) -> bool:
+        """Whether an effect need not show in predictions: its equation is explained, or the data cannot tell at all.
+
+        While something else is missing, predictions over a second may hang on that alone.
+        """
+        return trial.absorbed or trial.share >= EXPLAINED
 
     def extended(self, model: Model, h: Hypothesis) -> Model:
         """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
@@ -190,7 +200,12 @@ class Search:
         trials = put_on_trial(
             base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects
         )
-        trials = [replace(trial, refused=banned.get(trial.name, "")) for trial in trials]
+        now = excess(self.held, held.residual)
+        self.first = self.first or now
+        trials = [
+            replace(trial, refused=banned.get(trial.name, ""), rest=remaining(trial, self.first, now))
+            for trial in trials
+        ]
         good = [trial for trial in trials if not trial.objections]
         best = good[0] if good else None
         others = rivals(base, held, best, trials) if best else []

@@ -17,7 +17,8 @@ T_LEAST = 5.0
 GAIN_LEAST = 0.05  # of the mean square of an equation's residual on held-out runs
 Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
 SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
-SPOILED = 0.05  # share by which no equation may get worse
+SPOILED = 0.5  # of its best gain: by no more may another equation get worse, which something else may still bend
+REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
@@ -43,6 +44,7 @@ class Trial:
     first: bool  # whether nothing was added before
     decoy: float  # the largest t that a copy of its trace shifted in time reaches
     score: float  # log likelihood over the base, training and held-out runs together
+    rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
     refused: str = ""  # why it was taken back after it had been added
 
@@ -77,8 +79,10 @@ class Trial:
         elif self.z < Z_LEAST:
             found.append("its gain on held-out runs is within their scatter")
         worst = min(self.gain, key=lambda name: self.gain[name])
-        if self.gain[worst] < -SPOILED:
+        if self.gain[worst] < -SPOILED * max(most, GAIN_LEAST):
             found.append(f"makes {worst} {-100.0 * self.gain[worst]:.0f} % worse on held-out runs")
+        if self.rest < REST_LEAST:
+            found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
         if self.share < SHARE_LEAST[0 if self.first else 1]:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         return found
@@ -229,6 +233,17 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
         cov = cluster_robust(A, e + A @ x, evidence.block, bread, np.zeros(len(x)))
         largest = max(largest, wald(x[p:], cov[p:, p:]))
     return largest
+
+
+def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
+    """By equation, the mean square of the residual beyond the noise's."""
+    return {n: max(value - NOISE.get(n, 1.0), 0.0) for n, value in mean_squares(evidence, residual).items()}
+
+
+def remaining(trial: Trial, first: dict[str, float], now: dict[str, float]) -> float:
+    """Share of what was left at first that is still there, in the equation where the trial helps most."""
+    name = max(trial.gain, key=lambda n: trial.gain[n] * now.get(n, 0.0))
+    return now.get(name, 0.0) / first[name] if first.get(name) else 1.0
 
 
 def _lag(h: Hypothesis, sample_time: float) -> float:
