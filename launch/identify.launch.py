@@ -43,9 +43,9 @@ ARGUMENTS = [
 ]
 
 
-def typed(name: str, kind: type) -> ParameterValue:
+def typed(argument: LaunchConfiguration, kind: type) -> ParameterValue:
     """A launch argument as a parameter of this type, whatever it looks like."""
-    return ParameterValue(LaunchConfiguration(name), value_type=kind)
+    return ParameterValue(argument, value_type=kind)
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -57,7 +57,7 @@ def generate_launch_description() -> LaunchDescription:
         namespace=rig,
         parameters=[
             LaunchConfiguration("rig_params"),
-            {**SENSORS, **PATIENCE, "real_time_factor": typed("real_time_factor", float)},
+            {**SENSORS, **PATIENCE, "real_time_factor": typed(LaunchConfiguration("real_time_factor"), float)},
         ],
         output="screen",
         condition=IfCondition(LaunchConfiguration("simulate")),
@@ -75,10 +75,10 @@ def generate_launch_description() -> LaunchDescription:
         namespace=rig,
         parameters=[
             {
-                "programme": typed("programme", str),
-                "model": typed("twin_params", str),
-                "output": typed("folder", str),
-                "measurement_timeout": typed("timeout", float),
+                "programme": typed(LaunchConfiguration("programme"), str),
+                "model": typed(LaunchConfiguration("twin_params"), str),
+                "output": typed(LaunchConfiguration("folder"), str),
+                "measurement_timeout": typed(LaunchConfiguration("timeout"), float),
                 "wait": 60.0,
             }
         ],
@@ -90,10 +90,10 @@ def generate_launch_description() -> LaunchDescription:
         namespace="identified",  # its description is of what was identified, and must not mix with the rig's
         parameters=[
             {
-                "folder": typed("folder", str),
-                "model": typed("twin_params", str),
-                "output": typed("output", str),
-                "auto": typed("auto", bool),
+                "folder": typed(LaunchConfiguration("folder"), str),
+                "model": typed(LaunchConfiguration("twin_params"), str),
+                "output": typed(LaunchConfiguration("output"), str),
+                "auto": typed(LaunchConfiguration("auto"), bool),
                 "apply": True,
                 "target": ParameterValue(["/", twin, "/simulator"], value_type=str),
             }

@@ -24,6 +24,7 @@ Progress = Callable[[float, str], None]
 
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
+SHOWN = 2  # candidates that are tried in any case, so that the reasons against the next best can be read
 FINALISTS = 4  # candidates that are fitted to all training runs
 HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
 EXPLAINED = 0.8  # share of what noise does not explain in an equation
@@ -191,7 +192,8 @@ class Search:
         screened = screen(part)
         least, short = unaided(part) + PROMISING, list[Hypothesis]()
         for h in screened:
-            if h.name not in [s.name for s in short] and (h.likelihood > least or h.relief > PROMISING):
+            promising = h.likelihood > least or h.relief > PROMISING or len(short) < SHOWN
+            if promising and h.name not in [s.name for s in short]:
                 short.append(h)
         reference = log_likelihood(self.train, base.residual) + log_likelihood(self.held, held.residual)
         reference -= 0.5 * float(np.sum(base.offset**2))

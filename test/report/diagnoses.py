@@ -20,6 +20,12 @@ HOSTILE = """<img src=x onerror="window.hacked=1">'"&</script><script>window.hac
 COMMAND = ["diagnose", "sweep", "steps", "--holdout", "held out", "--report", "found.html"]
 EXPERIMENT = "Creep over the whole stroke & back <slowly>."
 COEFFICIENT = 60.0  # N s/m of the friction that the model lacks
+HIDDEN = {"adequate": (), "effects_found": ("viscous_friction",), "unknown_effect": ("constant_load",)}
+HIDDEN_SIZES = {
+    "adequate": {},
+    "effects_found": {"viscous_friction.coefficient": COEFFICIENT},
+    "unknown_effect": {"constant_load.load": 15.0},
+}
 KNOWN = {"effects_found": ("viscous_friction", "constant_load")}  # verdict -> effects that the search knows of
 
 
@@ -37,11 +43,10 @@ class Few(Library):
 
 @lru_cache(maxsize=3)
 def diagnosed(verdict: str) -> Outcome:
-    """A machine with viscous friction that the model lacks, and the catalogue too if unknown; or one without."""
+    """A machine with viscous friction that the model lacks; with a load that no catalogue has; or with neither."""
     base = load_model()
-    given = Model(base.composition, base.parameters, base.name, Few(KNOWN.get(verdict, ("constant_load",))))
-    friction = {"viscous_friction.coefficient": COEFFICIENT}
-    truth = base if verdict == "adequate" else base.with_effects([*base.effects, "viscous_friction"], friction)
+    given = Model(base.composition, base.parameters, base.name, Few(KNOWN.get(verdict, ("viscous_friction",))))
+    truth = base.with_effects([*base.effects, *HIDDEN[verdict]], HIDDEN_SIZES[verdict])
     train = [recorded(truth, kind, kind, seed) for seed, kind in enumerate(("sweep", "steps"))]
     return diagnose(given, train, [recorded(truth, "steps", HOSTILE, 7, seconds=15.0)])
 
