@@ -65,11 +65,11 @@ def test_a_simulator_without_velocity_is_recorded_for_every_reader(tmp_path: Pat
 
 
 def test_a_recorder_that_cannot_keep_up_counts_what_it_lost(tmp_path: Path) -> None:
-    """Stopped for a second, as by a debugger, while 4 x 1000 messages come: no queue of the system holds so many."""
+    """Stopped, as by a debugger, while 4 x 1500 messages come: no queue of the system holds so many."""
     with running(*recorder(tmp_path), cwd=tmp_path) as recording, running(*publisher(3000), cwd=tmp_path) as source:
         source.wait_for("1000")
         recording.process.send_signal(signal.SIGSTOP)
-        time.sleep(1.0)
+        source.wait_for("2500")
         recording.process.send_signal(signal.SIGCONT)
         source.wait_for("3000 published")
         time.sleep(1.5)  # until /diagnostics has told it
