@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.compare import Comparison, compare
 from pneumo_ros.discover.basefit import base_fit
 from pneumo_ros.discover.coordinates import coordinates, starts
-from pneumo_ros.discover.diagnosis import deviations
-from pneumo_ros.discover.hypothesis import Hypothesis, everything
+from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.ranking import refine
 from pneumo_ros.discover.search import Search
 from pneumo_ros.errors import UsageError
@@ -74,11 +73,11 @@ def add(
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting what the model has")
     fading = [name for name in effects if coordinates(model.library.find(name))]
-    search = _search(model, fading, train)
+    search = Search(model, train, train[:1], candidates=fading)
     base = larger = search.refit(model)
     if len(fading) < len(effects):
         plain = [name for name in effects if name not in fading]
-        search = _search(model.with_effects([*model.effects, *plain]), fading, train)
+        search = Search(model.with_effects([*model.effects, *plain]), train, train[:1], candidates=fading)
         larger = search.refit(search.start)
     for k, name in enumerate(fading):
         tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
@@ -160,13 +159,6 @@ def _thinned(each: Sequence[Index], most: int) -> list[Index]:
     return [every[kept][run[kept] == i] for i in range(len(each))]
 
 
-def _search(model: Model, effects: Sequence[str], train: Sequence[Run]) -> Search:
-    """A search that compiles no other effects than these."""
-    search = Search(model, train, train[:1])
-    search.whole = everything(model, {name: coordinates(model.library.find(name)) for name in effects})
-    return search
-
-
 def _with(search: Search, model: Model, name: str) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
     names, prior, centre = search.priors(model)
@@ -184,7 +176,7 @@ def _part(tell: Progress, first: float, last: float, what: str) -> Progress:
 def estimates_along(search: Search, model: Model) -> dict[str, Estimate]:
     """Estimates of what is free in a model that `search` fitted, against what was known before."""
     names, prior, centre = search.priors(model)
-    spread = deviations(search, model)
+    spread = search.deviations(model)
     return {
         n: Estimate(
             model[n], spread[n], model[n] - 1.96 * spread[n], model[n] + 1.96 * spread[n], centre[n], float(width)

@@ -7,38 +7,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.breakaway import REST
-from pneumo_ros.identify.guess import HALF_WIDTH, smoothed
+from pneumo_ros.identify.equations import centred
+from pneumo_ros.identify.guess import measured_frame
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
-from pneumo_ros.identify.smooth import smooth
+from pneumo_ros.identify.sensors import shifted
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.compose import SENSED
 
 Array = NDArray[np.float64]
 
 BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
-SENSORS = {"y": "y_measured", "p_a": "p_a_measured", "p_b": "p_b_measured"}
 _SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a run says of the frame's states: measured ones with smoothed velocity (n, 2 or 4), and where it rests."""
+    """What a run says of the frame's states: measured ones with smoothed velocity (n, 2 or 4)."""
 
     run: Run
     states: Array
-    rests: NDArray[np.bool_]
 
 
 def frame_of(run: Run, force_driven: bool) -> Frame:
     """Measured position, smoothed velocity and measured pressures; a piston at rest has exactly no velocity."""
-    states = smoothed(run).frame[:, : 2 if force_driven else 4].copy()
-    for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
-        if column < states.shape[1]:
-            states[:, column] = signal
-    rests = resting(run)
-    states[rests, 1] = 0.0
-    return Frame(run, states, rests)
+    states = measured_frame(run, force_driven)
+    states[resting(run), 1] = 0.0
+    return Frame(run, states)
 
 
 def resting(run: Run) -> NDArray[np.bool_]:
@@ -59,7 +55,7 @@ def resting(run: Run) -> NDArray[np.bool_]:
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
     """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
     states, mean = _drive(model, frame.run, frame.states, _held(frame.run))
-    return states, _centred(mean)
+    return states, centred(mean)
 
 
 def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple[int, Array, Array]]:
@@ -77,7 +73,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple
                 given = np.stack([_corrected(model, q, frame, x) for q, x in zip(block, states, strict=True)])
             states, mean = _drive_lanes(model, frame.run, given, block)
             for k, x, m in zip(rows, states, mean, strict=True):
-                yield int(k), x, _centred(m)
+                yield int(k), x, centred(m)
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array) -> tuple[Array, Array]:
@@ -94,11 +90,6 @@ def _held(run: Run) -> Array:
     return np.asarray(run.input.reshape(-1, QUICK, PARTS // QUICK).mean(axis=2).ravel())
 
 
-def _centred(mean: Array) -> Array:
-    # the mean of the intervals on both sides of a sample: a sum over samples is then the integral, input steps and all
-    return np.asarray(0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0)))
-
-
 def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:
     step = 1.01 * run.sample_time / QUICK
     rest = model.state()[given.shape[1] :]
@@ -109,15 +100,11 @@ def _corrected(model: Model, q: Array, frame: Frame, states: Array) -> Array:
     """The frame's states whose observation is what was measured, by one fixed-point step."""
     names = model.composition.observed
     seen = np.empty((len(states), len(names)))
-    model.kernel.observe(
-        np.ascontiguousarray(states), q, np.append(frame.run.held, frame.run.held[-1]), frame.run.time, seen
-    )
-    result = frame.states.copy()
-    for column, name in ((0, "y"), (2, "p_a"), (3, "p_b")):
-        if column < result.shape[1]:
-            result[:, column] += states[:, column] - seen[:, names.index(SENSORS[name])]
-    result[:, 1] += smooth(result[:, 0] - frame.states[:, 0], frame.run.sample_time, HALF_WIDTH, 3, 1)
-    return np.asarray(result)
+    held = np.append(frame.run.held, frame.run.held[-1])
+    model.kernel.observe(np.ascontiguousarray(states), q, held, frame.run.time, seen)
+    read = {state: signal for signal, state in SENSED.items() if state in model.states}
+    shift = [states[:, model.states.index(state)] - seen[:, names.index(signal)] for state, signal in read.items()]
+    return shifted(frame.states, np.stack(shift, axis=1), frame.run.sample_time)
 
 
 def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
@@ -125,7 +112,7 @@ def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
     for effect in model.composition.effects:
-        if any(signal in SENSORS.values() for function in effect.functions.values() for signal in function.writes):
+        if any(signal in SENSED for function in effect.functions.values() for signal in function.writes):
             fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
             acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
             found |= np.any(acts, axis=0) if acts else True

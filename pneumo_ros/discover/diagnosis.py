@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
 from pneumo_ros.diagnose.verdicts import root_mean_square
-from pneumo_ros.discover.basefit import base_fit
-from pneumo_ros.discover.hypothesis import cluster_robust, family_scales, weights
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.search import Found, Progress, Search, Step
 from pneumo_ros.discover.trial import Trial
@@ -56,7 +54,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
             course.append((_label(models, k), window_error(comparisons[k])))
         else:
             course.append((_label(models, k), predicted_error(model, held)))
-    values = deviations(search, found.model)
+    values = search.deviations(found.model)
     added = tuple(
         _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
         for k, step in enumerate(s for s in found.steps if s.added)
@@ -115,20 +113,6 @@ def noise_levels(comparison: Comparison) -> dict[str, float]:
     """Noise by signal, in its unit."""
     names = comparison.runs[0].error
     return {n: float(np.sqrt(np.mean([run.error[n].noise ** 2 for run in comparison.runs]))) for n in names}
-
-
-def deviations(search: Search, model: Model) -> dict[str, float]:
-    """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
-    names, prior, centre = search.priors(model)
-    base = base_fit(search.train, search.whole, model, names, centre, prior)
-    w = weights(search.train, base.residual, family_scales(search.train, base.residual))
-    A = base.slopes * w[:, None]
-    normal = A.T @ A
-    bread = np.linalg.inv(normal + np.eye(len(names)))
-    cov = cluster_robust(A, w * base.residual, search.train.block, bread, np.ones(len(names)))
-    robust, plain = np.sqrt(np.diag(cov)), np.sqrt(np.diag(bread))
-    std = np.maximum(robust, plain) * prior
-    return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in zip(names, std, prior, strict=True)}
 
 
 def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:

@@ -2,7 +2,7 @@
 
 Families: the momentum while the piston slides [N], in windows of 100 and 40 ms; the chambers [kg/s], in windows of
 200 and 40 ms; and the breakaways [N], the force at slip against the static friction the model claims there and then.
-They are written as in `identify.weak`; each comes with the noise that the sensors alone give it.
+They are those of `identify.equations`; each comes with the noise that the sensors alone give it.
 """
 
 from collections.abc import Sequence
@@ -16,16 +16,14 @@ from scipy.signal import savgol_coeffs
 from pneumo_ros.discover.course import Frame, follow, follow_each, frame_of
 from pneumo_ros.identify.breakaway import REST, Breakaway, find_breakaways
 from pneumo_ros.identify.bump import Bump
-from pneumo_ros.identify.noise import noise_level, run_noise
+from pneumo_ros.identify.equations import Chamber, Momentum, measured_throughout
 from pneumo_ros.identify.run import Run, check_position
-from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 WINDOWS = {"momentum": (0.1, 0.04), "chamber_a": (0.2, 0.04), "chamber_b": (0.2, 0.04)}  # s
-SLIDING = 0.01  # m/s
 BLOCK = 0.4  # s: errors within a block belong together
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
 
@@ -141,15 +139,11 @@ class Course:
         bump = _bump(family)
         rows = bump.centres(len(states))
         mass = model["piston.mass"] + self._see(model, q, states[rows], rows)["added_mass"]
-        return np.asarray(mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 0])))
+        return Momentum.value(bump, mass, states[:, 0], claimed[:, 0])
 
     def _chamber(self, model: Model, states: Array, claimed: Array, family: Family) -> Array:
-        bump, gamma = _bump(family), model["air.heat_capacity_ratio"]
-        column, slope, volume, content = _gas(model, family.equation[-1], states[:, 0])
-        p = states[:, column]
-        rate = claimed[:, column - 1] / p + gamma * slope * states[:, 1] / volume
-        value = bump.apply(-bump.first, np.log(p) + gamma * np.log(volume)) - bump.apply(bump.phi, rate)
-        return np.asarray(bump.apply(bump.phi, content * p) * value)
+        equation = Chamber(model, family.equation[-1])
+        return equation.value(_bump(family), states, claimed[:, equation.column - 1])
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed there and then."""
@@ -173,71 +167,26 @@ def _bump(family: Family) -> Bump:
 
 
 def _families(model: Model, frame: Frame, index: int) -> list[Family]:
-    states, claimed = follow(model, frame)
-    noise = run_noise(frame.run)
-    found = [_momentum_family(model, frame, states, noise, index, width) for width in WINDOWS["momentum"]]
-    if not model.force_driven:
-        for chamber in ("a", "b"):
-            for width in WINDOWS[f"chamber_{chamber}"]:
-                found.append(_chamber_family(model, frame, states, claimed, noise, index, chamber, width))
-    breakaways = tuple(find_breakaways(model, frame.run)) if "z" in model.states else ()
+    run, (states, claimed) = frame.run, follow(model, frame)
+    found, momentum = [], Momentum(model, run, states)
+    for width in WINDOWS["momentum"]:
+        bump = Bump.of(width, run.sample_time)
+        found.append(_family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump)))
+    for chamber in "" if model.force_driven else "ab":
+        equation = Chamber(model, chamber)
+        rate, steep = claimed[:, equation.column], equation.steepness(run, states)
+        for width in WINDOWS[f"chamber_{chamber}"]:
+            bump = Bump.of(width, run.sample_time)
+            noise = equation.noise(bump, run, states, rate, steep)
+            found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
+    breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
     spread = np.array([b.spread for b in breakaways])
     time = np.array([b.time for b in breakaways])
     found.append(Family("breakaway", 0.0, index, time, spread, np.ones(len(time), dtype=bool), None, breakaways))
     return found
 
 
-def _momentum_family(
-    model: Model, frame: Frame, states: Array, noise: dict[str, float], index: int, width: float
+def _family(
+    equation: str, width: float, index: int, run: Run, bump: Bump, noise: Array, usable: NDArray[np.bool_]
 ) -> Family:
-    run, bump = frame.run, Bump.of(width, frame.run.sample_time)
-    mass, ones = model["piston.mass"], np.ones(len(run))
-    by_velocity = _sensitivity(model, run, states, 1, 1e-3)[:, 1]
-    parts = [noise["position_m"] * mass * bump.noise([(bump.second, ones), (bump.first, by_velocity)])]
-    if model.force_driven:
-        parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
-        drive = np.append(run.held, run.held[-1])
-    else:
-        for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
-            parts.append(noise[name] * model[f"piston.{area}"] * bump.noise([(bump.phi, ones)]))
-        drive = model.effort(states)
-    parts.append(bump.coarseness(0.12) * np.sqrt(bump.apply(bump.phi, drive**2)))
-    slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
-    reach = 0.5 * model["piston.stroke"] - 1e-3
-    bad = slow | ~run.measured | (np.abs(run.position) > reach)
-    usable = bump.apply(np.ones(bump.width), bad.astype(float)) < 0.5
-    total = np.broadcast_to(np.sqrt(np.sum([p**2 for p in parts], axis=0)), usable.shape)
-    return Family("momentum", width, index, bump.apply(bump.phi, run.time), total, usable, bump)
-
-
-def _chamber_family(
-    model: Model, frame: Frame, states: Array, claimed: Array, noise: dict[str, float], index: int, chamber: str,
-    width: float,
-) -> Family:  # fmt: skip
-    run, bump = frame.run, Bump.of(width, frame.run.sample_time)
-    column, slope, volume, content = _gas(model, chamber, run.position)
-    p, gamma = states[:, column], model["air.heat_capacity_ratio"]
-    rate = claimed[:, column] / p + gamma * slope * states[:, 1] / volume
-    steep = _sensitivity(model, run, states, column, 100.0)[:, column] / p - claimed[:, column] / p**2
-    by_pressure = noise[f"pressure_{chamber}_pa"] * bump.noise([(-bump.first, 1.0 / p), (-bump.phi, steep)])
-    by_position = noise["position_m"] * bump.noise([(-bump.first, gamma * slope / volume)])
-    by_sums = bump.coarseness(4.0) * np.sqrt(bump.apply(bump.phi, rate**2))
-    usable = bump.apply(np.ones(bump.width), (~run.measured).astype(float)) < 0.5
-    total = bump.apply(bump.phi, content * p) * np.sqrt(by_pressure**2 + by_position**2 + by_sums**2)
-    return Family(f"chamber_{chamber}", width, index, bump.apply(bump.phi, run.time), total, usable, bump)
-
-
-def _gas(model: Model, chamber: str, position: Array) -> tuple[int, float, Array, Array]:
-    """State column, dV/dy [m2], volume (n,) [m3], and mass per pressure and per unit of ln p (n,) [kg/Pa]."""
-    slope = model["piston.area_a"] if chamber == "a" else -model["piston.area_b"]
-    volume = model[f"chambers.volume_{chamber}"] + slope * position
-    R_T = model["air.gas_constant"] * model["air.temperature"]
-    return model.states.index(f"p_{chamber}"), slope, volume, volume / (model["air.heat_capacity_ratio"] * R_T)
-
-
-def _sensitivity(model: Model, run: Run, states: Array, column: int, probe: float) -> Array:
-    """Change of all derivatives (n, states) per unit of the state in `column`."""
-    held = np.append(run.held, run.held[-1])
-    pushed = states.copy()
-    pushed[:, column] += probe
-    return np.asarray((model.derivatives(pushed, held, run.time) - model.derivatives(states, held, run.time)) / probe)
+    return Family(equation, width, index, bump.apply(bump.phi, run.time), noise, usable, bump)

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.identify.robust import huber_loss, huber_weight
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
 
@@ -48,14 +50,13 @@ def family_scales(evidence: Evidence, residual: Array) -> Array:
 
 def huber(u: Array) -> Array:
     """Loss of sizes in scales: squared up to five, linear beyond."""
-    size = np.abs(u)
-    return np.where(size < TAIL, 0.5 * size**2, TAIL * (size - 0.5 * TAIL))
+    return huber_loss(u, TAIL)
 
 
 def weights(evidence: Evidence, residual: Array, scale: Array) -> Array:
     """Factors (residuals,) of the residuals in iterated least squares."""
-    u = np.abs(residual) / scale[evidence.family]
-    return np.asarray(OVERLAP * np.sqrt(np.minimum(1.0, TAIL / np.maximum(u, 1e-12))) / scale[evidence.family])
+    each = scale[evidence.family]
+    return np.asarray(OVERLAP * np.sqrt(huber_weight(residual / each, TAIL)) / each)
 
 
 def log_likelihood(evidence: Evidence, residual: Array) -> float:
@@ -113,8 +114,6 @@ def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:
 
 
 def _fits(model: Model, name: str) -> bool:
-    from pneumo_ros.errors import PneumoError
-
     try:
         model.with_effects([*model.effects, name])
     except PneumoError:

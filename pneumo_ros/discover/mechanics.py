@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import PneumoError
-from pneumo_ros.identify.guess import smoothed
+from pneumo_ros.identify.guess import measured_frame
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.segments import Segments, cut
 from pneumo_ros.identify.sensors import corrected
@@ -60,9 +60,7 @@ def driven_by_pressures(model: Model, run: Run) -> Run:
     """The run as one of an axis that its measured pressures drive, corrected for the model's pressure sensors."""
     if model.force_driven:
         return run
-    frame = smoothed(run).frame.copy()
-    frame[:, 0], frame[:, 2], frame[:, 3] = run.position, run.signals["pressure_a_pa"], run.signals["pressure_b_pa"]
-    pressures = corrected(model, frame, run)[:, 2:4]
+    pressures = corrected(model, measured_frame(run, force_driven=False), run)[:, 2:4]
     force = model["piston.area_a"] * pressures[:, 0] - model["piston.area_b"] * pressures[:, 1]
     n = len(force)
     cells = np.repeat(np.arange(n - 1), PARTS) + np.tile((np.arange(PARTS) + 0.5) / PARTS, n - 1)

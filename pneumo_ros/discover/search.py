@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.basefit import base_fit, fit_base
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, everything, huber, log_likelihood, missing
+from pneumo_ros.discover.hypothesis import (
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    everything,
+    family_scales,
+    huber,
+    log_likelihood,
+    missing,
+    weights,
+)
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals
@@ -59,13 +69,19 @@ class Search:
     """Everything that stays the same during one search."""
 
     def __init__(
-        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
+        self,
+        model: Model,
+        train: Sequence[Run],
+        held: Sequence[Run],
+        progress: Progress | None = None,
+        candidates: Sequence[str] | None = None,
     ) -> None:
+        """`candidates`: names of all that may be added; by default whatever the model lacks."""
         self.progress = progress or (lambda share, text: None)
         self.start = model
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
-        self.whole = everything(model, missing(model))  # one kernel for all that may be added
-        self.quality = (float("nan"), float("nan"))  # median error of slips, training and held-out
+        found = missing(model) if candidates is None else own_coordinates(model, candidates)
+        self.whole = everything(model, found)  # one kernel for all that may be added
         self.train, self.held = Evidence(model, train), Evidence(model, held)
 
     def run(self) -> Found:
@@ -152,37 +168,42 @@ class Search:
 
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""
-        from pneumo_ros.discover.diagnosis import deviations
-
         made = slips(model, self.train.runs, self.held.runs)
         if made is None:
             return model
         added = [name for name in model.effects if name not in self.start.effects]
-        return with_values_of(model, polished(*made, deviations(self, model), added))
+        return with_values_of(model, polished(*made, self.deviations(model), added))
+
+    def deviations(self, model: Model) -> dict[str, float]:
+        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
+        names, prior, centre = self.priors(model)
+        base = base_fit(self.train, self.whole, model, names, centre, prior)
+        w = weights(self.train, base.residual, family_scales(self.train, base.residual))
+        A = base.slopes * w[:, None]
+        bread = np.linalg.inv(A.T @ A + np.eye(len(names)))
+        cov = cluster_robust(A, w * base.residual, self.train.block, bread, np.ones(len(names)))
+        std = np.sqrt(np.maximum(np.diag(cov), np.diag(bread))) * prior
+        return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in zip(names, std, prior, strict=True)}
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
-        from pneumo_ros.discover.diagnosis import deviations
-
         made = slips(model, self.train.runs, self.held.runs)
         if made is None:
             return model, None
         alone, found = made
-        known = deviations(self, model)
+        known = self.deviations(model)
         train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
-        self.quality = (float(np.median(train)), float(np.median(held)))
-        if max(self.quality) < POOR:
+        if max(np.median(train), (usual := float(np.median(held)))) < POOR:
             return model, None
         tried = try_candidates(alone, found, blind(screened, alone), known)
         first = model.effects == self.start.effects
         trials = [as_trial(c, missing(alone)[c.name], train, held, first) for c in tried]
         good = [t for t in trials if not t.objections]
         best = good[0] if good else None
-        step = Step(model, tuple(trials), best, (), {"slip": self.quality[1]}, {"slip": self.quality[1]})
+        step = Step(model, tuple(trials), best, (), {"slip": usual}, {"slip": usual})
         if best is not None:
             chosen = next(c for c in tried if c.name == best.name)
             model = with_values_of(model.with_effects([*model.effects, best.name]), chosen.model)
-            self.quality = (float(np.median(chosen.train)), float(np.median(chosen.held)))
         return model, step
 
     def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
@@ -246,6 +267,11 @@ def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     return any(after[n] <= BETTER * before[n] for n in before) and all(after[n] <= WORSE * before[n] for n in before)
 
 
+def own_coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """Coordinates of effects of the model's library, by name."""
+    return {name: coordinates(model.library.find(name)) for name in names}
+
+
 def with_values_of(model: Model, other: Model) -> Model:
     """The model with all parameters that `other` has at its values."""
     return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
@@ -253,11 +279,9 @@ def with_values_of(model: Model, other: Model) -> Model:
 
 def _prior(c: Coordinate, value: float) -> tuple[float, float]:
     if c.logarithmic:
-        return c.typical if c.is_size is False else value, max(abs(value), 1e-12) * c.prior
+        return value if c.is_size else c.typical, max(abs(value), 1e-12) * c.prior
     return (c.neutral or 0.0), abs(c.scale) * c.prior
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:
-    from pneumo_ros.discover.hypothesis import family_scales
-
     return dict(zip(evidence.names, family_scales(evidence, residual).tolist(), strict=True))

@@ -16,7 +16,9 @@ from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical, moves
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import PneumoError
+from pneumo_ros.identify.problem import TAIL
 from pneumo_ros.identify.refit import refit_segments
+from pneumo_ros.identify.robust import huber_loss
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.segments import Segments
 from pneumo_ros.identify.start import fit_starts
@@ -34,7 +36,6 @@ TRIED = 3  # candidates, those the equations see least
 FEW = 3  # parameters: the events are too few to fit more
 SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
-_TAIL = 4.0
 _SIZES = (0.3, 1.0, 2.5)
 
 
@@ -69,10 +70,9 @@ def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Mode
 def errors(model: Model, segments: Segments) -> Array:
     """Mean squared error per sample over the noise's (events,), robust, every start fitted."""
     x = fit_starts(model, segments)
-    size = np.abs(segments.residuals(model, x)[0])
-    loss = np.where(size < _TAIL, 0.5 * size**2, _TAIL * (size - 0.5 * _TAIL))
-    total = np.sum(loss, axis=1) + 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
-    return np.asarray(2.0 * total / size.shape[1])
+    whitened = segments.residuals(model, x)[0]
+    far = 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
+    return np.asarray(2.0 * (np.sum(huber_loss(whitened, TAIL), axis=1) + far) / whitened.shape[1])
 
 
 def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = ()) -> Model:
@@ -80,8 +80,8 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
 
     `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise.
     """
-    names = [f"lugre_friction.{key}" for key in FREE]
-    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    prior = _friction_priors(alone, known)
+    names = list(prior)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
         if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
             sure = known[name] < SURE * abs(alone[name])
@@ -90,6 +90,11 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
     new = refit_segments(alone, found.train(alone), names, prior).model
     before, after = (float(np.median(errors(m, found.train(m)))) for m in (alone, new))
     return new if after < before else alone
+
+
+def _friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
+    names = [f"lugre_friction.{key}" for key in FREE]
+    return {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
 
 
 @dataclass(frozen=True)
@@ -130,10 +135,9 @@ def _fit(
         few = found.train(model).pick(np.arange(0, len(found.train_rows), 3))
         options.append((float(np.median(errors(model, few))), model))
     model = min(options, key=lambda option: option[0])[1]
-    names = [f"lugre_friction.{key}" for key in FREE]
-    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    prior = _friction_priors(alone, known)
     prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(model[c.name])) for c in effect}
-    return refit_segments(model, found.train(model), [*names, *(c.name for c in effect)], prior).model
+    return refit_segments(model, found.train(model), list(prior), prior).model
 
 
 def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:

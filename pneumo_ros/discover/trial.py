@@ -8,7 +8,16 @@ from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, cluster_robust, family_scales, huber, weights
+from pneumo_ros.discover.hypothesis import (
+    OVERLAP,
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    family_scales,
+    huber,
+    log_likelihood,
+    weights,
+)
 from pneumo_ros.discover.ranking import wald
 
 Array = NDArray[np.float64]
@@ -145,7 +154,7 @@ def explained(evidence: Evidence, before: Array, after: Array) -> float:
 def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
     """Loss that `better` saves against `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
     scale = family_scales(evidence, better)[evidence.family]
-    difference = 0.36 * (huber(worse / scale) - huber(better / scale))
+    difference = OVERLAP**2 * (huber(worse / scale) - huber(better / scale))
     blocks = np.clip(np.bincount(evidence.block, difference), -MOST_BLOCK, MOST_BLOCK)
     spread = float(np.sqrt(np.sum(blocks**2)))
     return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0
@@ -260,8 +269,6 @@ def put_on_trial(
     first: bool,
 ) -> list[Trial]:
     """Trials of refined hypotheses with their held-out residuals, best score first; `reference`: the base's score."""
-    from pneumo_ros.discover.hypothesis import log_likelihood
-
     rng, found = np.random.default_rng(0), []
     for h, r in zip(hypotheses, residuals, strict=True):
         found.append(

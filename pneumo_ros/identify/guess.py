@@ -38,6 +38,15 @@ def smoothed(run: Run) -> Smoothed:
     return Smoothed(np.stack(columns, axis=1), smooth(y, dt, 1.5 * HALF_WIDTH, 3, 2))
 
 
+def measured_frame(run: Run, force_driven: bool) -> Array:
+    """Measured position and pressures with the smoothed velocity (n, 4); (n, 2) of a force-driven axis."""
+    frame: Array = smoothed(run).frame[:, : 2 if force_driven else 4].copy()
+    for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
+        if column < frame.shape[1]:
+            frame[:, column] = signal
+    return frame
+
+
 @dataclass(frozen=True)
 class Guess:
     """First guesses at some grid points of a run (points, states), and their standard deviations (states,)."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.identify.robust import huber_loss, huber_weight
 from pneumo_ros.identify.segments import PROBE, Segments
 from pneumo_ros.plant import Model
 
@@ -87,10 +88,8 @@ class Problem:
         return np.concatenate([errors, segments.from_guess(self.model, states, parameters)], axis=2)
 
     def losses(self, residuals: Array) -> Array:
-        """Loss (segments,) of whitened errors (Huber 1964) and of distances from guesses."""
-        size = np.abs(residuals)
-        square = np.minimum(size, self.tail)
-        return np.asarray(np.sum(square * (size - 0.5 * square), axis=1))
+        """Loss (segments,) of whitened errors and of distances from guesses."""
+        return np.asarray(np.sum(huber_loss(residuals, self.tail), axis=1))
 
     def total(self, residuals: Array, theta: Array) -> float:
         """Cost: losses of the segments that count, and what the priors say of the parameters."""
@@ -120,7 +119,7 @@ class Problem:
         """Linearised at starts and parameters, weighted as the residuals there deserve."""
         n, active = states.shape[1], self.active[:, None]
         jacobian = self.jacobian(states, theta)
-        weight = np.minimum(1.0, self.tail / np.maximum(np.abs(residuals), 1e-300))
+        weight = huber_weight(residuals, self.tail)
         weight[:, :-n] *= active  # starts of segments left out go where they were guessed
         jacobian[:, n:] *= active[..., None]
         weighted = jacobian * weight[:, None]

@@ -41,7 +41,7 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
         if not (change > np.append(_ENOUGH[0], np.full(len(change) - 1, _ENOUGH[1]))).any():
             break
         states, rates = model.follow(
-            _shifted(frame, shift, run.sample_time), run.input, rest, sample_time=run.sample_time, parts=PARTS
+            shifted(frame, shift, run.sample_time), run.input, rest, sample_time=run.sample_time, parts=PARTS
         )
         before = shift
     return states, rates
@@ -58,7 +58,8 @@ def _shift(model: Model, states: Array, run: Run) -> Array:
     return np.asarray(states[:, columns] - read[0])
 
 
-def _shifted(frame: Array, shift: Array, sample_time: float) -> Array:
+def shifted(frame: Array, shift: Array, sample_time: float) -> Array:
+    """The frame (n, 2 or 4) with `shift` (n, 1 or 3) added to position and pressures, and its rate to the velocity."""
     moved: Array = frame.copy()
     moved[:, 0] += shift[:, 0]
     moved[:, 1] += smooth(shift[:, 0], sample_time, _HALF_WIDTH, 3, 1)

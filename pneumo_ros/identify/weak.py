@@ -1,13 +1,6 @@
 """Residuals of the model's equations along the measured signals, in weak form: nothing measured is differentiated.
 
-Each equation is multiplied by a smooth bump phi(t) = (1 - tau^2)^6 and integrated by parts over a short window:
-
-    momentum:  (1 / I) int (phi'' M y - phi M v'_model) dt   [N]
-    chamber:   (1 / I) int (-phi' L - phi (p'/p + gamma V'/V)_model) dt  p V / (gamma R T)   [kg/s]
-
-with I = int phi and L = ln p + gamma ln V. The chamber's form needs no velocity:
-the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction does, and what the noise of an estimated
-velocity does to it, int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise stated with each residual.
+The equations themselves, their noise and where they count are those of `identify.equations`.
 """
 
 from dataclasses import dataclass
@@ -16,20 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.bump import Bump
-from pneumo_ros.identify.guess import smoothed
-from pneumo_ros.identify.noise import noise_level, run_noise
+from pneumo_ros.identify.equations import Chamber, Momentum, centred, measured_throughout
+from pneumo_ros.identify.guess import measured_frame
 from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.identify.sensors import driven
-from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
 MOMENTUM_WINDOW, CHAMBER_WINDOW = 0.1, 0.2  # s
 FORCE_WINDOW = 0.02  # s: little more than the sampling, so that the error is that of the force itself
-SLIDING = 0.01  # m/s: slower, friction is not a function of velocity and the momentum equation says little
-# How coarse sums over samples are, measured on simulations without noise at 50 Hz to 4 kHz; see `Bump.coarseness`
-_MOMENTUM_SUMS, _CHAMBER_SUMS = 0.12, 4.0
 
 
 @dataclass(frozen=True)
@@ -61,11 +50,10 @@ def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
     """
     check_position(model, run)
     states, claimed = _along(model, run)
-    noise = run_noise(run)
-    result = {"momentum": _momentum(model, run, states, claimed, noise)}
+    result = {"momentum": _momentum(model, run, states, claimed)}
     if not model.force_driven:
         for chamber in ("a", "b"):
-            result[f"chamber_{chamber}"] = _chamber(model, run, states, claimed, noise, chamber)
+            result[f"chamber_{chamber}"] = _chamber(model, run, states, claimed, chamber)
     return result
 
 
@@ -80,73 +68,30 @@ def force_error(model: Model, run: Run) -> float:
     mass = model["piston.mass"]
     drive = np.append(run.held, run.held[-1]) if model.force_driven else model.outputs(states)["drive"]
     error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
-    inside = bump.apply(np.ones(bump.width), (~run.measured).astype(float)) < 0.5
+    inside = measured_throughout(run, bump)
     return float(100.0 * np.linalg.norm(error[inside]) / np.linalg.norm(bump.apply(bump.phi, drive)[inside]))
 
 
 def _along(model: Model, run: Run) -> tuple[Array, Array]:
     """States and claimed derivatives (n, states) along the measured signals, what sensors do taken back."""
-    frame = smoothed(run).frame[:, : 2 if model.force_driven else 4].copy()
-    for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
-        if column < frame.shape[1]:
-            frame[:, column] = signal
-    states, mean = driven(model, frame, run)
-    # the mean of the intervals on both sides of a sample: a sum over samples is then the integral, input steps and all
-    return states, 0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0))
+    states, mean = driven(model, measured_frame(run, model.force_driven), run)
+    return states, centred(mean)
 
 
-def _momentum(model: Model, run: Run, states: Array, claimed: Array, noise: dict[str, float]) -> Residual:
-    bump = Bump.of(MOMENTUM_WINDOW, run.sample_time)
-    mass = model["piston.mass"]
-    moving = mass + model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"][bump.centres(len(run))]
-    value = moving * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
-    ones = np.ones(len(run))
-    by_velocity = _sensitivity(model, run, states, 1, 1e-3)[:, 1]
-    parts = [noise["position_m"] * mass * bump.noise([(bump.second, ones), (bump.first, by_velocity)])]
-    if model.force_driven:
-        parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
-        drive = np.append(run.held, run.held[-1])
-    else:
-        for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
-            parts.append(noise[name] * model[f"piston.{area}"] * bump.noise([(bump.phi, ones)]))
-        drive = model.effort(states)
-    parts.append(bump.coarseness(_MOMENTUM_SUMS) * np.sqrt(bump.apply(bump.phi, drive**2)))
-    slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
-    usable = (bump.apply(np.ones(bump.width), (slow | ~run.measured).astype(float)) < 0.5) & _inside(model, run, bump)
-    return _residual("momentum", "N", run, bump, value, np.sqrt(np.sum(np.square(parts), axis=0)), usable)
+def _momentum(model: Model, run: Run, states: Array, claimed: Array) -> Residual:
+    bump, equation = Bump.of(MOMENTUM_WINDOW, run.sample_time), Momentum(model, run, states)
+    added = model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"]
+    mass = model["piston.mass"] + added[bump.centres(len(run))]
+    value = equation.value(bump, mass, states[:, 0], claimed[:, 1])
+    return _residual("momentum", "N", run, bump, value, equation.noise(bump), equation.usable(bump))
 
 
-def _inside(model: Model, run: Run, bump: Bump) -> NDArray[np.bool_]:
-    reach = 0.5 * model["piston.stroke"] - 1e-3
-    return np.asarray(bump.apply(np.ones(bump.width), (np.abs(run.position) > reach).astype(float)) < 0.5)
-
-
-def _chamber(model: Model, run: Run, states: Array, claimed: Array, noise: dict[str, float], chamber: str) -> Residual:
-    bump = Bump.of(CHAMBER_WINDOW, run.sample_time)
-    column = model.states.index(f"p_{chamber}")
-    gamma = model["air.heat_capacity_ratio"]
-    slope = model["piston.area_a"] if chamber == "a" else -model["piston.area_b"]
-    p, volume = states[:, column], model[f"chambers.volume_{chamber}"] + slope * states[:, 0]
-    rate = claimed[:, column] / p + gamma * slope * states[:, 1] / volume
-    steep = _sensitivity(model, run, states, column, 100.0)[:, column] / p - claimed[:, column] / p**2
-    content = p * volume / (gamma * model["air.gas_constant"] * model["air.temperature"])  # kg per unit of L
-    scale = bump.apply(bump.phi, content)
-    value = scale * (bump.apply(-bump.first, np.log(p) + gamma * np.log(volume)) - bump.apply(bump.phi, rate))
-    by_pressure = noise[f"pressure_{chamber}_pa"] * bump.noise([(-bump.first, 1.0 / p), (-bump.phi, steep)])
-    by_position = noise["position_m"] * bump.noise([(-bump.first, gamma * slope / volume)])
-    by_sums = bump.coarseness(_CHAMBER_SUMS) * np.sqrt(bump.apply(bump.phi, rate**2))
-    usable = bump.apply(np.ones(bump.width), (~run.measured).astype(float)) < 0.5
-    total = scale * np.sqrt(by_pressure**2 + by_position**2 + by_sums**2)
-    return _residual(f"chamber_{chamber}", "kg/s", run, bump, value, total, usable)
-
-
-def _sensitivity(model: Model, run: Run, states: Array, column: int, probe: float) -> Array:
-    """Change of all derivatives (n, states) per unit of the state in `column`."""
-    held = np.append(run.held, run.held[-1])
-    pushed = states.copy()
-    pushed[:, column] += probe
-    change = model.derivatives(pushed, held, run.time) - model.derivatives(states, held, run.time)
-    return np.asarray(change / probe)
+def _chamber(model: Model, run: Run, states: Array, claimed: Array, chamber: str) -> Residual:
+    bump, equation = Bump.of(CHAMBER_WINDOW, run.sample_time), Chamber(model, chamber)
+    rate = claimed[:, equation.column]
+    value = equation.value(bump, states, rate)
+    noise = equation.noise(bump, run, states, rate, equation.steepness(run, states))
+    return _residual(f"chamber_{chamber}", "kg/s", run, bump, value, noise, measured_throughout(run, bump))
 
 
 def _residual(
