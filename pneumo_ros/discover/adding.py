@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, compare
-from pneumo_ros.discover.basefit import base_fit
 from pneumo_ros.discover.coordinates import coordinates, starts
 from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.ranking import refine
@@ -161,10 +160,9 @@ def _thinned(each: Sequence[Index], most: int) -> list[Index]:
 
 def _with(search: Search, model: Model, name: str) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
-    names, prior, centre = search.priors(model)
-    fit = base_fit(search.train, search.whole, model, names, centre, prior)
+    fit = search.fit(model)
     own = coordinates(model.library.find(name))
-    begin = [Hypothesis(name, own, u, np.zeros(len(names)), fit.residual) for u in starts(own)]
+    begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
     return search.refit(search.extended(model, best))
 

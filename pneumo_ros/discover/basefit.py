@@ -12,23 +12,23 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 
-def residuals(evidence: Evidence, whole: Model, model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
-    """Residuals (variants, residuals) of `model` with some values changed, by the kernel that holds every candidate."""
-    return evidence.residuals(whole, vectors(whole, [{**model.parameters, **v} for v in variants]))
+def residuals(evidence: Evidence, model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
+    """Residuals (variants, residuals) of `model` with some values changed."""
+    return evidence.residuals(model, vectors(model, variants))
 
 
-def slopes(evidence: Evidence, whole: Model, model: Model, names: Sequence[str], prior: Array) -> tuple[Array, Array]:
+def slopes(evidence: Evidence, model: Model, names: Sequence[str], prior: Array) -> tuple[Array, Array]:
     """Residual (residuals,) of `model`, and its derivative (residuals, free) by each named parameter per prior."""
     steps = np.where(
         [model[n] + 0.02 * p > model.specification(n).high for n, p in zip(names, prior, strict=True)], -0.02, 0.02
     )
     moved = [{n: model[n] + s * p} for n, s, p in zip(names, steps, prior, strict=True)]
-    r = residuals(evidence, whole, model, [{}, *moved])
+    r = residuals(evidence, model, [{}, *moved])
     return r[0], np.asarray(((r[1:] - r[0]) / steps[:, None]).T)
 
 
 def fit_base(
-    evidence: Evidence, whole: Model, model: Model, names: Sequence[str], centre: Mapping[str, float], prior: Array,
+    evidence: Evidence, model: Model, names: Sequence[str], centre: Mapping[str, float], prior: Array,
     iterations: int = 6,
 ) -> Model:  # fmt: skip
     """Gauss-Newton from `model`, with priors about `centre`; the model found."""
@@ -36,7 +36,7 @@ def fit_base(
     middle = np.array([centre[n] for n in names])
     low = np.array([model.specification(n).low for n in names])
     high = np.array([model.specification(n).high for n in names])
-    r, J = slopes(evidence, whole, here, names, prior)
+    r, J = slopes(evidence, here, names, prior)
     for _ in range(iterations):
         theta = np.array([here[n] for n in names])
         offset, scale = (theta - middle) / prior, family_scales(evidence, r)
@@ -46,7 +46,7 @@ def fit_base(
             after = r + J @ x
         before = _cost(evidence, r, offset, scale)
         steps = [np.clip(theta + share * x * prior, low, high) for share in (1.0, 0.3, 0.1)]
-        tried = residuals(evidence, whole, here, [dict(zip(names, new.tolist(), strict=True)) for new in steps])
+        tried = residuals(evidence, here, [dict(zip(names, new.tolist(), strict=True)) for new in steps])
         costs = [_cost(evidence, t, (new - middle) / prior, scale) for t, new in zip(tried, steps, strict=True)]
         best = int(np.argmin(costs))
         if costs[best] >= before:
@@ -54,7 +54,7 @@ def fit_base(
         here = here.with_parameters(dict(zip(names, steps[best].tolist(), strict=True)))
         if before - costs[best] < 0.5 + 1e-4 * before:
             break
-        r, J = slopes(evidence, whole, here, names, prior)
+        r, J = slopes(evidence, here, names, prior)
     return here
 
 
@@ -65,8 +65,8 @@ def _cost(evidence: Evidence, r: Array, offset: Array, scale: Array) -> float:
 def base_fit(
     evidence: Evidence, whole: Model, model: Model, names: Sequence[str], centre: Mapping[str, float], prior: Array
 ) -> BaseFit:
-    """What hypotheses start from."""
+    """What hypotheses start from; `whole` is a model that holds `model` and every candidate."""
     offset = (np.array([model[n] for n in names]) - np.array([centre[n] for n in names])) / prior
-    r, J = slopes(evidence, whole, model, names, prior)
+    r, J = slopes(evidence, model, names, prior)
     held = whole.with_parameters({n: v for n, v in model.parameters.items() if n in whole.parameters})
     return BaseFit(model, held, tuple(names), prior, offset, evidence, r, J)

@@ -4,7 +4,7 @@ All hypotheses share one model that holds every candidate at its neutral setting
 one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -128,7 +128,7 @@ def everything(model: Model, found: dict[str, tuple[Coordinate, ...]]) -> Model:
     return model.with_effects(order, values)
 
 
-def vectors(model: Model, variants: Sequence[dict[str, float]]) -> Array:
+def vectors(model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
     """Parameter vectors (variants, parameters) of a model with some values changed."""
     names = {name: k for k, name in enumerate(model.parameters)}
     result = np.tile(model.values, (len(variants), 1))

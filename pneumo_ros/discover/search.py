@@ -82,6 +82,7 @@ class Search:
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
         found = missing(model) if candidates is None else own_coordinates(model, candidates)
         self.whole = everything(model, found)  # one kernel for all that may be added
+        self._fitted: BaseFit | None = None
         self.train, self.held = Evidence(model, train), Evidence(model, held)
 
     def run(self) -> Found:
@@ -156,15 +157,19 @@ class Search:
     def refit(self, model: Model) -> Model:
         """All free parameters fitted to the training evidence."""
         names, prior, centre = self.priors(model)
-        return fit_base(self.train, self.whole, model, names, centre, prior)
+        return fit_base(self.train, model, names, centre, prior)
 
     def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence."""
         names, prior, centre = self.priors(model)
-        return (
-            base_fit(self.train, self.whole, model, names, centre, prior),
-            base_fit(self.held, self.whole, model, names, centre, prior),
-        )
+        return self.fit(model), base_fit(self.held, self.whole, model, names, centre, prior)
+
+    def fit(self, model: Model) -> BaseFit:
+        """The model on training evidence; that of the last one asked for is kept."""
+        if self._fitted is None or self._fitted.model is not model:
+            names, prior, centre = self.priors(model)
+            self._fitted = base_fit(self.train, self.whole, model, names, centre, prior)
+        return self._fitted
 
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""
@@ -176,8 +181,8 @@ class Search:
 
     def deviations(self, model: Model) -> dict[str, float]:
         """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
-        names, prior, centre = self.priors(model)
-        base = base_fit(self.train, self.whole, model, names, centre, prior)
+        names, prior, _centre = self.priors(model)
+        base = self.fit(model)
         w = weights(self.train, base.residual, family_scales(self.train, base.residual))
         A = base.slopes * w[:, None]
         bread = np.linalg.inv(A.T @ A + np.eye(len(names)))

@@ -1,13 +1,18 @@
 """Independent lanes in the blocks that the vectorised kernel advances together, spread over threads."""
 
+import os
 from collections.abc import Callable, Sequence
+from functools import cache
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pneumo_ros.errors import UsageError
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 Array = NDArray[np.float64]
 
@@ -25,11 +30,19 @@ def _share(part: Callable[[slice], None], count: int, threads: int) -> None:
     shares = [slice(i, i + share) for i in range(0, count, share)]
     if len(shares) == 1:
         part(shares[0])
-    else:
-        from concurrent.futures import ThreadPoolExecutor  # slow to import
+        return
+    others = [_pool(os.getpid()).submit(part, one) for one in shares[1:]]
+    part(shares[0])
+    for other in others:
+        other.result()
 
-        with ThreadPoolExecutor(len(shares)) as pool:
-            list(pool.map(part, shares))
+
+@cache
+def _pool(process: int) -> "ThreadPoolExecutor":
+    """Threads that are kept: thousands of short calls would start them anew. A forked process has none of its own."""
+    from concurrent.futures import ThreadPoolExecutor  # slow to import
+
+    return ThreadPoolExecutor(os.cpu_count())
 
 
 def run_lanes(
