@@ -52,6 +52,7 @@ class Evidence:
 
     What does not depend on the variant is made once: windows, their noise, which of them count. Arrays (residuals,):
     family (index into `names`), run and block index of each entry, its time [s], and the noise in the entry's unit.
+    `drive`: root mean square of the force that drives the piston [N].
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
@@ -73,6 +74,7 @@ class Evidence:
         self.family = np.repeat([self.names.index(f.name) for f in families], counts)
         self.run = np.repeat([f.run for f in families], counts)
         self.time = np.concatenate([f.time[f.usable] for f in families])
+        self.drive = float(np.sqrt(np.mean(np.concatenate([course.drive**2 for course in self.courses]))))
         self.block = np.unique((self.run * 100000 + self.time / BLOCK).astype(np.int64), return_inverse=True)[1]
 
     def __len__(self) -> int:
@@ -98,6 +100,7 @@ class Course:
         self.run, self.frame = run, frame_of(run, model.force_driven)
         self.families = _families(model, self.frame, index)
         self.held = np.append(run.held, run.held[-1])
+        self.drive = self.held if model.force_driven else model.effort(self.frame.states)
         last = self.families[-1]
         self.breakaways = last.breakaways
         width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)

@@ -21,7 +21,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 LENGTH = 0.3  # s
-MOST = 60  # segments
+MOST = 40  # segments: more take longer, and move friction by less than its deviation
 _SLOW, _MOVED = 0.004, 3e-4  # m/s and m: an event is slower than the one and goes farther than the other
 _LAG = 0.025  # s
 

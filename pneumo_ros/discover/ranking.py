@@ -23,13 +23,19 @@ from pneumo_ros.discover.hypothesis import (
 Array = NDArray[np.float64]
 
 SHORTLIST = 6
+STRAINED = 4.5  # log likelihood that base parameters cost by their priors
 FEW = 3  # sizes: of effects with more, only the linear fit is tried
 
 
 def screen(base: BaseFit) -> list[Hypothesis]:
-    """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first."""
+    """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
+
+    Where base parameters are strained, also by the slope at neutral: what they stand in for, they do by slopes.
+    """
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
+    if 0.5 * float(np.sum(base.offset**2)) > STRAINED:
+        tasks += [(name, effect, PROBE * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
     for _name, effect, u in tasks:
@@ -47,6 +53,10 @@ def screen(base: BaseFit) -> list[Hypothesis]:
         change = (residual[first : first + count] - residual[0]).T
         result.append(_linear(base, name, effect, u, sizes, change))
     return sorted(result, key=lambda h: -h.likelihood)
+
+
+def _one_size(effect: tuple[Coordinate, ...]) -> bool:
+    return sum(c.is_size for c in effect) == 1 and not any(c.is_size and c.logarithmic for c in effect)
 
 
 def _linear(
@@ -68,7 +78,7 @@ def _linear(
         c = effect[k]
         start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
     relief = 0.5 * float(np.sum(base.offset**2) - np.sum((x[:p] + base.offset) ** 2))
-    value = log_likelihood(base.evidence, after)
+    value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((x[:p] + base.offset) ** 2))
     return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
 
 
@@ -151,9 +161,10 @@ def _at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
     return shift, after, value
 
 
-def unaided(base: BaseFit) -> float:
-    """Log likelihood that base parameters reach without any candidate, by one linear step like the candidates'."""
-    return log_likelihood(base.evidence, _at_best(base, base.residual)[1])
+def unaided(base: BaseFit) -> Hypothesis:
+    """What base parameters reach without any candidate, by one linear step like the candidates': nothing is missing."""
+    shift, after, value = _at_best(base, base.residual)
+    return Hypothesis("", (), np.empty(0), shift, after, value)
 
 
 def _values(h: Hypothesis, u: Array) -> dict[str, float]:

@@ -216,19 +216,21 @@ class Search:
         base, held = self.fits(model)
         part = self.worst(base)
         screened = screen(part)
-        least, short = unaided(part) + PROMISING, list[Hypothesis]()
+        least, short = unaided(part).likelihood + PROMISING, list[Hypothesis]()
         for h in screened:
-            promising = h.likelihood > least or h.relief > PROMISING or len(short) < SHOWN
+            promising = h.likelihood > least or len(short) < SHOWN
             if promising and h.name not in [s.name for s in short]:
                 short.append(h)
-        reference = log_likelihood(self.train, base.residual) + log_likelihood(self.held, held.residual)
-        reference -= 0.5 * float(np.sum(base.offset**2))
         tried = sorted(refine(part, short[:SHORTLIST]), key=lambda h: -h.likelihood)
         tried = refine(base, tried[:FINALISTS], iterations=2, settled=True)
+        nothing = unaided(base)
+        without = held_out(base, held, [nothing])[0]
+        reference = nothing.likelihood + log_likelihood(self.held, without)
         trials = put_on_trial(
-            base, held, tried, held_out(base, held, tried), reference, model.effects == self.start.effects
-        )
-        now = excess(self.held, held.residual)
+            base, replace(held, residual=without), tried, held_out(base, held, tried), reference,
+            model.effects == self.start.effects,
+        )  # fmt: skip
+        now = excess(self.held, without)
         self.first = self.first or now
         trials = [
             replace(trial, refused=banned.get(trial.name, ""), rest=remaining(trial, self.first, now))
@@ -238,8 +240,8 @@ class Search:
         best = good[0] if good else None
         others = rivals(base, held, best, trials) if best else []
         step = Step(
-            model, tuple(trials), best, tuple(others), _scales(self.held, held.residual),
-            _scales(self.held, best.held if best else held.residual),
+            model, tuple(trials), best, tuple(others), _scales(self.held, without),
+            _scales(self.held, best.held if best else without),
         )  # fmt: skip
         return step, screened
 

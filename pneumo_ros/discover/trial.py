@@ -26,6 +26,7 @@ T_LEAST = 5.0
 GAIN_LEAST = 0.05  # of the mean square of an equation's residual on held-out runs
 Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
 SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
+TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
 SPOILED = 0.5  # of its best gain: by no more may another equation get worse, which something else may still bend
 REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
@@ -53,6 +54,7 @@ class Trial:
     first: bool  # whether nothing was added before
     decoy: float  # the largest t that a copy of its trace shifted in time reaches
     score: float  # log likelihood over the base, training and held-out runs together
+    force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
     refused: str = ""  # why it was taken back after it had been added
@@ -92,7 +94,8 @@ class Trial:
             found.append(f"makes {worst} {-100.0 * self.gain[worst]:.0f} % worse on held-out runs")
         if self.rest < REST_LEAST:
             found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
-        if self.share < SHARE_LEAST[0 if self.first else 1]:
+        alone = self.first and (self.force > 1.0 or equation_helped(self.gain) != "momentum")
+        if self.share < SHARE_LEAST[0 if alone else 1]:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         return found
 
@@ -126,6 +129,18 @@ def _at_end(c: Coordinate, u: float) -> bool:
 def equation_of(name: str) -> str:
     """The equation of a family: momentum, chamber_a, chamber_b or breakaway."""
     return name.partition(" ")[0]
+
+
+def equation_helped(gain: dict[str, float]) -> str:
+    """The equation that gains most; "" of none."""
+    return max(gain, key=lambda name: gain[name], default="")
+
+
+def force(evidence: Evidence, before: Array, after: Array) -> float:
+    """Root mean square of what changes in the momentum equation [N]; 0 without it."""
+    own = np.isin(evidence.family, [k for k, name in enumerate(evidence.names) if equation_of(name) == "momentum"])
+    change = (before - after)[own] * evidence.noise[own]
+    return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
 
 
 def mean_squares(evidence: Evidence, residual: Array) -> dict[str, float]:
@@ -283,6 +298,7 @@ def put_on_trial(
                 first=first,
                 decoy=decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
                 score=h.likelihood + log_likelihood(held.evidence, r) - reference,
+                force=force(held.evidence, held.residual, r) / (TEXTURE * held.evidence.drive),
                 lag=_lag(h, base.evidence.runs[0].sample_time),
             )
         )
