@@ -24,7 +24,10 @@ def _tank_time(m: Fields) -> float:
 TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
     "viscous_friction": {"coefficient": lambda m: m["viscous_out"]},
     "asymmetric_friction": {"ratio": lambda m: m["retract_excess"]},
-    "asymmetric_viscous_friction": {"difference": lambda m: m["viscous_in"] - m["viscous_out"]},
+    "asymmetric_viscous_friction": {
+        "coefficient_extension": lambda m: m["viscous_out"],
+        "coefficient_retraction": lambda m: m["viscous_in"],
+    },
     "pressure_dependent_friction": {"coefficient": lambda m: m["seal"]},
     "stribeck_shape": {"exponent": lambda m: m["stribeck_power"]},
     "friction_warmup": {"share": lambda m: m["warm_share"], "time_constant": lambda m: m["warm_fast"]},

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 HIDEABLE = {
     "viscous_friction": ("coefficient", 80.0, 300.0),
     "asymmetric_friction": ("ratio", 0.1, 0.4),
-    "asymmetric_viscous_friction": ("difference", 60.0, 150.0),
+    "asymmetric_viscous_friction": ("coefficient_retraction", 60.0, 150.0),
     "pressure_dependent_friction": ("coefficient", 3e-5, 1e-4),
     "payload_mass": ("mass_added", 3.0, 20.0),
     "constant_load": ("load", 15.0, 50.0),

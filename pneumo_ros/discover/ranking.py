@@ -77,7 +77,7 @@ def _linear(
     for k, size in zip(sizes, x[p:], strict=True):
         c = effect[k]
         start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
-    relief = 0.5 * float(np.sum(base.offset**2) - np.sum((x[:p] + base.offset) ** 2))
+    relief = _relief(base, x[:p])
     value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((x[:p] + base.offset) ** 2))
     return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
 
@@ -164,7 +164,12 @@ def _at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
 def unaided(base: BaseFit) -> Hypothesis:
     """What base parameters reach without any candidate, by one linear step like the candidates': nothing is missing."""
     shift, after, value = _at_best(base, base.residual)
-    return Hypothesis("", (), np.empty(0), shift, after, value)
+    return Hypothesis("", (), np.empty(0), shift, after, value, relief=_relief(base, shift))
+
+
+def _relief(base: BaseFit, shift: Array) -> float:
+    """Log likelihood of the priors that base parameters regain by a shift."""
+    return 0.5 * float(np.sum(base.offset**2) - np.sum((shift + base.offset) ** 2))
 
 
 def _values(h: Hypothesis, u: Array) -> dict[str, float]:
@@ -203,7 +208,7 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
     distance = np.array([_distance(h.coordinates[j], u[j]) for j in sizes])
     t = wald(distance, cov[np.ix_(sizes, sizes)])
-    relief = 0.5 * float(np.sum(base.offset**2) - np.sum((shift + base.offset) ** 2))
+    relief = _relief(base, shift)
     return replace(
         h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C, relief=relief
     )

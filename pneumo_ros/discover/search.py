@@ -16,13 +16,12 @@ from pneumo_ros.discover.hypothesis import (
     everything,
     family_scales,
     huber,
-    log_likelihood,
     missing,
     weights,
 )
 from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
-from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals
+from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals, simplest
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.refit import default_free
 from pneumo_ros.identify.run import Run
@@ -225,9 +224,8 @@ class Search:
         tried = refine(base, tried[:FINALISTS], iterations=2, settled=True)
         nothing = unaided(base)
         without = held_out(base, held, [nothing])[0]
-        reference = nothing.likelihood + log_likelihood(self.held, without)
         trials = put_on_trial(
-            base, replace(held, residual=without), tried, held_out(base, held, tried), reference,
+            base, replace(held, residual=without), tried, held_out(base, held, tried), nothing,
             model.effects == self.start.effects,
         )  # fmt: skip
         now = excess(self.held, without)
@@ -236,8 +234,7 @@ class Search:
             replace(trial, refused=banned.get(trial.name, ""), rest=remaining(trial, self.first, now))
             for trial in trials
         ]
-        good = [trial for trial in trials if not trial.objections]
-        best = good[0] if good else None
+        best = simplest(base, held, [trial for trial in trials if not trial.objections])
         others = rivals(base, held, best, trials) if best else []
         step = Step(
             model, tuple(trials), best, tuple(others), _scales(self.held, without),

@@ -1,7 +1,7 @@
 """What speaks for a candidate and what against: everything that has to hold before an effect is added."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -280,15 +280,19 @@ def put_on_trial(
     held: BaseFit,
     hypotheses: Sequence[Hypothesis],
     residuals: Sequence[Array],
-    reference: float,
+    nothing: Hypothesis,
     first: bool,
 ) -> list[Trial]:
-    """Trials of refined hypotheses with their held-out residuals, best score first; `reference`: the base's score."""
+    """Trials of refined hypotheses with their held-out residuals, best score first.
+
+    All is told against `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
+    """
     rng, found = np.random.default_rng(0), []
+    reference = nothing.likelihood + log_likelihood(held.evidence, held.residual)
     for h, r in zip(hypotheses, residuals, strict=True):
         found.append(
             Trial(
-                hypothesis=h,
+                hypothesis=replace(h, relief=h.relief - nothing.relief),
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
                 z=advantage(held.evidence, held.residual, r)[1],
@@ -311,14 +315,28 @@ def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -
     for other in others:
         if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
             continue
-        if other.score < ALIKE * best.score:
+        if other.score < ALIKE * best.score or best.name in _contained(base, other):
             continue
-        z = pooled_advantage(
-            [
-                (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
-                (held.evidence, other.held, best.held),
-            ]
-        )
-        if z < TIED:
+        if _tied(base, held, best, other):
             found.append(other)
     return found
+
+
+def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:
+    """The first of `good`, or what it contains when all runs together do not ask for more; None of none."""
+    for other in good[1:]:
+        if other.name in _contained(base, good[0]) and _tied(base, held, good[0], other):
+            return other
+    return good[0] if good else None
+
+
+def _contained(base: BaseFit, trial: Trial) -> tuple[str, ...]:
+    return base.model.library.find(trial.name).contains
+
+
+def _tied(base: BaseFit, held: BaseFit, best: Trial, other: Trial) -> bool:
+    pairs = [
+        (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
+        (held.evidence, other.held, best.held),
+    ]
+    return pooled_advantage(pairs) < TIED

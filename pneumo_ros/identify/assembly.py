@@ -22,7 +22,8 @@ ADDED = (  # by effects that a machine may have besides, as far as steady motion
     "viscous_friction.coefficient",
     "stribeck_shape.exponent",
     "asymmetric_friction.ratio",
-    "asymmetric_viscous_friction.difference",
+    "asymmetric_viscous_friction.coefficient_extension",
+    "asymmetric_viscous_friction.coefficient_retraction",
 )
 _UNKNOWN = 0.3  # relative prior deviation of friction parameters that the map leaves open
 

@@ -122,6 +122,7 @@ class Effect:
     functions: ClassVar[dict[str, Function]] = {}
     signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
     source: ClassVar[str] = ""
+    contains: ClassVar[tuple[str, ...]] = ()  # effects that it becomes at some of its values: they are simpler
 
     def __init_subclass__(cls) -> None:
         cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()

@@ -18,8 +18,10 @@ NORMAL = np.sqrt(293.0 / 293.15)  # the rig's gas is as warm as the norm's
 SAME = {
     "viscous_friction": ({"viscous_out": 180.0, "viscous_in": 180.0}, {"coefficient": 180.0}),
     "asymmetric_friction": ({"retract_excess": 0.3}, {"ratio": 0.3}),
-    "asymmetric_viscous_friction": ({"viscous_out": 0.0, "viscous_in": 100.0}, {"difference": 100.0}),
-    "asymmetric_viscous_friction, extending": ({"viscous_out": 100.0, "viscous_in": 0.0}, {"difference": -100.0}),
+    "asymmetric_viscous_friction": (
+        {"viscous_out": 30.0, "viscous_in": 100.0},
+        {"coefficient_extension": 30.0, "coefficient_retraction": 100.0},
+    ),
     "pressure_dependent_friction": ({"seal": 8e-5}, {"coefficient": 8e-5}),
     "stribeck_shape": ({"stribeck_power": 0.7}, {"exponent": 0.7}),
     "friction_warmup": ({"warm_share": 0.3, "warm_fast": 1.0}, {"share": 0.3, "time_constant": 1.0}),
