@@ -101,7 +101,7 @@ def diagnosed(
         if found.interrupted:
             interrupted()
         with finishing(interrupted):
-            return conclude(search, found, progress), estimates_along(search, found.model)
+            return conclude(search, found, progress), estimates_along(search.fitter, found.model)
 
 
 def _what(outcome: "Outcome") -> str:

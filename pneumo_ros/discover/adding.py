@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, compare
 from pneumo_ros.discover.coordinates import coordinates, starts
+from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.ranking import refine
-from pneumo_ros.discover.search import Search
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.breakaway import find_breakaways
 from pneumo_ros.identify.refit import SEGMENT, Estimate, Refit, default_free, refit_segments
@@ -72,17 +72,17 @@ def add(
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting what the model has")
     fading = [name for name in effects if coordinates(model.library.find(name))]
-    search = Search(model, train, train[:1], candidates=fading)
-    base = larger = search.refit(model)
+    fitter = Fitter(model, train, train[:1], candidates=fading)
+    base = larger = fitter.refit(model)
     if len(fading) < len(effects):
         plain = [name for name in effects if name not in fading]
-        search = Search(model.with_effects([*model.effects, *plain]), train, train[:1], candidates=fading)
-        larger = search.refit(search.start)
+        fitter = Fitter(model.with_effects([*model.effects, *plain]), train, train[:1], candidates=fading)
+        larger = fitter.refit(fitter.start)
     for k, name in enumerate(fading):
         tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
-        larger = _with(search, larger, name)
-    base = polish(search, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
-    found = polish(search, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
+        larger = _with(fitter, larger, name)
+    base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
+    found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
     judged, compared = held or train, []
     for k, one in enumerate((model, base, found.model)):
         tell(0.85 + 0.05 * k, "predicting the recordings")
@@ -113,7 +113,7 @@ def check_addable(model: Model, effects: Sequence[str]) -> None:
 
 
 def polish(
-    search: Search,
+    fitter: Fitter,
     model: Model,
     runs: Sequence[Run],
     most: int = SEGMENTS,
@@ -123,13 +123,14 @@ def polish(
 ) -> Refit:
     """Multiple shooting from `model`, over at most `most` segments of all runs.
 
-    What is free and what was known of it are those of `search`; estimates tell what changed against its start.
+    What is free and what was known of it are those of `fitter`; estimates tell what changed against its start.
     """
-    names, prior, centre = search.priors(model)
+    known = fitter.known(model)
     samples = max(round(SEGMENT / runs[0].sample_time), 2)
     segments = cut_at(model, runs, telling(model, runs, samples, most), samples)
-    widths = dict(zip(names, prior.tolist(), strict=True))
-    found = refit_segments(model, segments, names, widths, threads=threads, progress=progress)
+    widths = dict(zip(known.names, known.prior.tolist(), strict=True))
+    centre = dict(zip(known.names, known.centre.tolist(), strict=True))
+    found = refit_segments(model, segments, known.names, widths, threads=threads, progress=progress)
     estimates = {n: replace(e, before=centre[n], prior=widths[n]) for n, e in found.estimates.items()}
     return replace(found, estimates=estimates)
 
@@ -158,26 +159,26 @@ def _thinned(each: Sequence[Index], most: int) -> list[Index]:
     return [every[kept][run[kept] == i] for i in range(len(each))]
 
 
-def _with(search: Search, model: Model, name: str) -> Model:
+def _with(fitter: Fitter, model: Model, name: str) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
-    fit = search.fit(model)
+    fit = fitter.fit(model)
     own = coordinates(model.library.find(name))
     begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
-    return search.refit(search.extended(model, best))
+    return fitter.refit(fitter.extended(model, best))
 
 
 def _part(tell: Progress, first: float, last: float, what: str) -> Progress:
     return lambda share, _: tell(first + (last - first) * share, f"refitting {what} what is added, by prediction")
 
 
-def estimates_along(search: Search, model: Model) -> dict[str, Estimate]:
-    """Estimates of what is free in a model that `search` fitted, against what was known before."""
-    names, prior, centre = search.priors(model)
-    spread = search.deviations(model)
-    return {
-        n: Estimate(
-            model[n], spread[n], model[n] - 1.96 * spread[n], model[n] + 1.96 * spread[n], centre[n], float(width)
-        )
-        for n, width in zip(names, prior, strict=True)
-    }
+def estimates_along(fitter: Fitter, model: Model) -> dict[str, Estimate]:
+    """Estimates of what is free in a model that `fitter` fitted, against what was known before."""
+    known = fitter.known(model)
+    spread = fitter.deviations(model)
+    each = zip(known.names, known.centre.tolist(), known.prior.tolist(), strict=True)
+    return {n: _estimate(model[n], spread[n], centre, prior) for n, centre, prior in each}
+
+
+def _estimate(value: float, spread: float, before: float, prior: float) -> Estimate:
+    return Estimate(value, spread, value - 1.96 * spread, value + 1.96 * spread, before, prior)

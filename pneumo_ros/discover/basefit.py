@@ -1,6 +1,7 @@
 """The current model fitted to the evidence: base parameters and accepted effects, within their priors."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,32 +12,42 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
+ITERATIONS = 6
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known before any data of the parameters that may move: centres, standard deviations; arrays (free,).
+
+    `step`: by how much each is moved to see what it does.
+    """
+
+    names: tuple[str, ...]
+    centre: Array
+    prior: Array
+    step: Array
+
 
 def residuals(evidence: Evidence, model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
     """Residuals (variants, residuals) of `model` with some values changed."""
     return evidence.residuals(model, vectors(model, variants))
 
 
-def slopes(evidence: Evidence, model: Model, names: Sequence[str], prior: Array) -> tuple[Array, Array]:
-    """Residual (residuals,) of `model`, and its derivative (residuals, free) by each named parameter per prior."""
-    steps = np.where(
-        [model[n] + 0.02 * p > model.specification(n).high for n, p in zip(names, prior, strict=True)], -0.02, 0.02
-    )
-    moved = [{n: model[n] + s * p} for n, s, p in zip(names, steps, prior, strict=True)]
-    r = residuals(evidence, model, [{}, *moved])
-    return r[0], np.asarray(((r[1:] - r[0]) / steps[:, None]).T)
+def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array]:
+    """Residual (residuals,) of `model`, and its derivative (residuals, free) by each free parameter per prior."""
+    ends = np.array([model.specification(n).high for n in known.names])
+    here = np.array([model[n] for n in known.names])
+    steps = np.where(here + known.step > ends, -known.step, known.step)
+    r = residuals(evidence, model, [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))])
+    return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
-def fit_base(
-    evidence: Evidence, model: Model, names: Sequence[str], centre: Mapping[str, float], prior: Array,
-    iterations: int = 6,
-) -> Model:  # fmt: skip
-    """Gauss-Newton from `model`, with priors about `centre`; the model found."""
-    here = model
-    middle = np.array([centre[n] for n in names])
+def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS) -> Model:
+    """Gauss-Newton from `model`, within what is known; the model found."""
+    here, names, middle, prior = model, known.names, known.centre, known.prior
     low = np.array([model.specification(n).low for n in names])
     high = np.array([model.specification(n).high for n in names])
-    r, J = slopes(evidence, here, names, prior)
+    r, J = slopes(evidence, here, known)
     for _ in range(iterations):
         theta = np.array([here[n] for n in names])
         offset, scale = (theta - middle) / prior, family_scales(evidence, r)
@@ -54,7 +65,7 @@ def fit_base(
         here = here.with_parameters(dict(zip(names, steps[best].tolist(), strict=True)))
         if before - costs[best] < 0.5 + 1e-4 * before:
             break
-        r, J = slopes(evidence, here, names, prior)
+        r, J = slopes(evidence, here, known)
     return here
 
 
@@ -62,11 +73,9 @@ def _cost(evidence: Evidence, r: Array, offset: Array, scale: Array) -> float:
     return float(OVERLAP**2 * np.sum(huber(r / scale[evidence.family])) + 0.5 * np.sum(offset**2))
 
 
-def base_fit(
-    evidence: Evidence, whole: Model, model: Model, names: Sequence[str], centre: Mapping[str, float], prior: Array
-) -> BaseFit:
+def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> BaseFit:
     """What hypotheses start from; `whole` is a model that holds `model` and every candidate."""
-    offset = (np.array([model[n] for n in names]) - np.array([centre[n] for n in names])) / prior
-    r, J = slopes(evidence, model, names, prior)
+    offset = (np.array([model[n] for n in known.names]) - known.centre) / known.prior
+    r, J = slopes(evidence, model, known)
     held = whole.with_parameters({n: v for n, v in model.parameters.items() if n in whole.parameters})
-    return BaseFit(model, held, tuple(names), prior, offset, evidence, r, J)
+    return BaseFit(model, held, known.names, known.prior, offset, evidence, r, J)

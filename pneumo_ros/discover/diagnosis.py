@@ -54,7 +54,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
             course.append((_label(models, k), window_error(comparisons[k])))
         else:
             course.append((_label(models, k), predicted_error(model, held)))
-    values = search.deviations(found.model)
+    values = search.fitter.deviations(found.model)
     added = tuple(
         _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
         for k, step in enumerate(s for s in found.steps if s.added)

@@ -61,10 +61,15 @@ def weights(evidence: Evidence, residual: Array, scale: Array) -> Array:
 
 def log_likelihood(evidence: Evidence, residual: Array) -> float:
     """Of Gaussian errors whose family scales are what they are, windows counted once; noise bounds the scales."""
+    return float(np.sum(family_likelihoods(evidence, residual)))
+
+
+def family_likelihoods(evidence: Evidence, residual: Array) -> Array:
+    """The same by family (families,)."""
     scale = family_scales(evidence, residual)
     counts = np.bincount(evidence.family, minlength=len(scale)) * OVERLAP**2
     loss = np.bincount(evidence.family, huber(residual / scale[evidence.family]), len(scale)) * OVERLAP**2
-    return float(-np.sum(counts * np.log(scale)) - np.sum(loss))
+    return np.asarray(-counts * np.log(scale) - loss)
 
 
 @dataclass

@@ -12,6 +12,7 @@ from pneumo_ros.discover.hypothesis import (
     BaseFit,
     Hypothesis,
     cluster_robust,
+    family_likelihoods,
     family_scales,
     log_likelihood,
     missing,
@@ -22,8 +23,9 @@ from pneumo_ros.discover.hypothesis import (
 
 Array = NDArray[np.float64]
 
-SHORTLIST = 6
-STRAINED = 4.5  # log likelihood that base parameters cost by their priors
+SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
+STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
+TINY = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
 FEW = 3  # sizes: of effects with more, only the linear fit is tried
 
 
@@ -35,7 +37,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
     if 0.5 * float(np.sum(base.offset**2)) > STRAINED:
-        tasks += [(name, effect, PROBE * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
+        tasks += [(name, effect, TINY * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
     for _name, effect, u in tasks:
@@ -89,6 +91,21 @@ def wald(size: Array, covariance: Array) -> float:
     jitter = 1e-9 * np.trace(covariance) / len(size) + 1e-300
     value = float(size @ np.linalg.solve(covariance + jitter * np.eye(len(size)), size))
     return float(np.sqrt(max(value - (len(size) - 1), 0.0)))
+
+
+def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
+    """The first of each name, `most` of those that help the gas and as many of those that help the mechanics.
+
+    What is missing in one must not crowd out what is missing in the other.
+    """
+    gas = np.array([name.startswith("chamber") for name in base.evidence.names])
+    before, found = family_likelihoods(base.evidence, nothing.residual), dict[str, tuple[bool, Hypothesis]]()
+    for h in ranked:
+        gain = family_likelihoods(base.evidence, h.residual) - before
+        helps_gas = bool(np.sum(gain[gas]) > np.sum(gain[~gas]))
+        if h.name not in found and sum(other == helps_gas for other, _ in found.values()) < most:
+            found[h.name] = helps_gas, h
+    return [h for _, h in found.values()]
 
 
 def refine(

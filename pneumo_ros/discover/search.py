@@ -6,24 +6,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.basefit import base_fit, fit_base
-from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import (
     BaseFit,
     Hypothesis,
-    cluster_robust,
-    everything,
     family_scales,
     huber,
     missing,
-    weights,
 )
-from pneumo_ros.discover.ranking import SHORTLIST, held_out, refine, screen, unaided
+from pneumo_ros.discover.ranking import FINALISTS, SHORTLIST, STRAINED, held_out, refine, screen, shortlist, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
+from pneumo_ros.discover.strain import followed, strain
 from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals, simplest
 from pneumo_ros.identify.noise import run_noise
-from pneumo_ros.identify.refit import default_free
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
@@ -33,8 +29,7 @@ Progress = Callable[[float, str], None]
 
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
-SHOWN = 2  # candidates that are tried in any case, so that the reasons against the next best can be read
-FINALISTS = 4  # candidates that are fitted to all training runs
+SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
 HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
 EXPLAINED = 0.8  # share of what noise does not explain in an equation
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
@@ -68,26 +63,17 @@ class Search:
     """Everything that stays the same during one search."""
 
     def __init__(
-        self,
-        model: Model,
-        train: Sequence[Run],
-        held: Sequence[Run],
-        progress: Progress | None = None,
-        candidates: Sequence[str] | None = None,
+        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
     ) -> None:
-        """`candidates`: names of all that may be added; by default whatever the model lacks."""
         self.progress = progress or (lambda share, text: None)
-        self.start = model
+        self.fitter = Fitter(model, train, held)
+        self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
-        found = missing(model) if candidates is None else own_coordinates(model, candidates)
-        self.whole = everything(model, found)  # one kernel for all that may be added
-        self._fitted: BaseFit | None = None
-        self.train, self.held = Evidence(model, train), Evidence(model, held)
 
     def run(self) -> Found:
         """Add effects one after another while they pass every test."""
         self.progress(0.05, "refitting what the model has")
-        base = self.polish(self.refit(self.start))
+        base = self.polish(self.fitter.refit(self.start))
         model, steps = base, list[Step]()
         before, banned = windowed(base, self.held.runs), dict[str, str]()
         try:
@@ -100,7 +86,7 @@ class Search:
                     steps.append(replace(step, added=None))
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                new = self.polish(self.refit(self.extended(model, step.added.hypothesis)))
+                new = self.polish(self.fitter.refit(self.fitter.extended(model, step.added.hypothesis)))
                 after = windowed(new, self.held.runs)
                 if not self.beyond_doubt(step.added) and not pays(before, after):
                     banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
@@ -125,69 +111,13 @@ class Search:
         """
         return trial.absorbed or trial.share >= EXPLAINED
 
-    def extended(self, model: Model, h: Hypothesis) -> Model:
-        """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
-        names, prior, _ = self.priors(model)
-        moved = {}
-        for n, shift, p in zip(names, h.shift, prior, strict=True):
-            s = model.specification(n)
-            moved[n] = min(max(model[n] + shift * p, s.low), s.high)
-        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
-        return model.with_parameters(moved).with_effects([*model.effects, h.name], h.values)
-
-    def priors(self, model: Model) -> tuple[tuple[str, ...], Array, dict[str, float]]:
-        """Free parameters, their prior deviations and centres: the start's within 5 %, of added effects hardly any."""
-        names, deviation, centre = [], [], {}
-        for name in default_free(model):
-            section, _, _key = name.partition(".")
-            if name in UNSEEN:
-                continue
-            if section in self.start.effects:
-                size = max(abs(self.start[name]), abs(self.start.specification(name).default))
-                middle, width = self.start[name], 0.05 * size
-            else:
-                c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
-                middle, width = _prior(c, model[name])
-            names.append(name)
-            deviation.append(width)
-            centre[name] = middle
-        return tuple(names), np.array(deviation), centre
-
-    def refit(self, model: Model) -> Model:
-        """All free parameters fitted to the training evidence."""
-        names, prior, centre = self.priors(model)
-        return fit_base(self.train, model, names, centre, prior)
-
-    def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
-        """The model on training and held-out evidence."""
-        names, prior, centre = self.priors(model)
-        return self.fit(model), base_fit(self.held, self.whole, model, names, centre, prior)
-
-    def fit(self, model: Model) -> BaseFit:
-        """The model on training evidence; that of the last one asked for is kept."""
-        if self._fitted is None or self._fitted.model is not model:
-            names, prior, centre = self.priors(model)
-            self._fitted = base_fit(self.train, self.whole, model, names, centre, prior)
-        return self._fitted
-
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""
         made = slips(model, self.train.runs, self.held.runs)
         if made is None:
             return model
         added = [name for name in model.effects if name not in self.start.effects]
-        return with_values_of(model, polished(*made, self.deviations(model), added))
-
-    def deviations(self, model: Model) -> dict[str, float]:
-        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
-        names, prior, _centre = self.priors(model)
-        base = self.fit(model)
-        w = weights(self.train, base.residual, family_scales(self.train, base.residual))
-        A = base.slopes * w[:, None]
-        bread = np.linalg.inv(A.T @ A + np.eye(len(names)))
-        cov = cluster_robust(A, w * base.residual, self.train.block, bread, np.ones(len(names)))
-        std = np.sqrt(np.maximum(np.diag(cov), np.diag(bread))) * prior
-        return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in zip(names, std, prior, strict=True)}
+        return with_values_of(model, polished(*made, self.fitter.deviations(model), added))
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
@@ -195,7 +125,7 @@ class Search:
         if made is None:
             return model, None
         alone, found = made
-        known = self.deviations(model)
+        known = self.fitter.deviations(model)
         train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
         if max(np.median(train), (usual := float(np.median(held)))) < POOR:
             return model, None
@@ -212,22 +142,29 @@ class Search:
 
     def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
-        base, held = self.fits(model)
+        base, held = self.fitter.fits(model)
         part = self.worst(base)
-        screened = screen(part)
-        least, short = unaided(part).likelihood + PROMISING, list[Hypothesis]()
-        for h in screened:
-            promising = h.likelihood > least or len(short) < SHOWN
-            if promising and h.name not in [s.name for s in short]:
-                short.append(h)
-        tried = sorted(refine(part, short[:SHORTLIST]), key=lambda h: -h.likelihood)
-        tried = refine(base, tried[:FINALISTS], iterations=2, settled=True)
+        screened, bare = screen(part), unaided(part)
+        promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
+        short = shortlist(part, bare, promising or screened[:SHOWN], SHORTLIST)
+        tried = sorted(refine(part, short), key=lambda h: -h.likelihood)
+        tried = refine(base, shortlist(part, bare, tried, FINALISTS), iterations=2, settled=True)
         nothing = unaided(base)
         without = held_out(base, held, [nothing])[0]
+        held = replace(held, residual=without)
         trials = put_on_trial(
-            base, replace(held, residual=without), tried, held_out(base, held, tried), nothing,
+            base, held, tried, held_out(base, held, tried), nothing,
             model.effects == self.start.effects,
         )  # fmt: skip
+        if strain(base) > STRAINED:
+            relieving = followed(self.fitter, base, screened)
+            known = [trial.name for trial in trials if not trial.objections]
+            relieving = [pair for pair in relieving if pair[0].name not in known]
+            hypotheses, residuals = [h for h, _ in relieving], [r for _, r in relieving]
+            trials += put_on_trial(
+                base, held, hypotheses, residuals, nothing,
+                model.effects == self.start.effects,
+            )  # fmt: skip
         now = excess(self.held, without)
         self.first = self.first or now
         trials = [
@@ -271,20 +208,9 @@ def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     return any(after[n] <= BETTER * before[n] for n in before) and all(after[n] <= WORSE * before[n] for n in before)
 
 
-def own_coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
-    """Coordinates of effects of the model's library, by name."""
-    return {name: coordinates(model.library.find(name)) for name in names}
-
-
 def with_values_of(model: Model, other: Model) -> Model:
     """The model with all parameters that `other` has at its values."""
     return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
-
-
-def _prior(c: Coordinate, value: float) -> tuple[float, float]:
-    if c.logarithmic:
-        return value if c.is_size else c.typical, max(abs(value), 1e-12) * c.prior
-    return (c.neutral or 0.0), abs(c.scale) * c.prior
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

@@ -34,6 +34,7 @@ MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
+SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
 DECOYS = 12
 SLOW = 10.0
 FEW_RUNS = 3
@@ -317,9 +318,17 @@ def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -
             continue
         if other.score < ALIKE * best.score or best.name in _contained(base, other):
             continue
+        if _likeness(held.residual - best.held, held.residual - other.held) < SAME:
+            continue
         if _tied(base, held, best, other):
             found.append(other)
     return found
+
+
+def _likeness(one: Array, other: Array) -> float:
+    """Cosine of the angle between what two effects change."""
+    size = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return float(one @ other) / size if size else 0.0
 
 
 def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:

@@ -1,0 +1,107 @@
+"""A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base
+from pneumo_ros.discover.coordinates import Coordinate, coordinates
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import (
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    everything,
+    family_scales,
+    missing,
+    weights,
+)
+from pneumo_ros.identify.refit import default_free
+from pneumo_ros.identify.run import Run
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+STEP = 0.005  # of a prior, or of what is usual of an effect
+UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
+
+
+class Fitter:
+    """The evidence of training and held-out runs, and fits of `start` and of what grows from it."""
+
+    def __init__(
+        self, start: Model, train: Sequence[Run], held: Sequence[Run], candidates: Sequence[str] | None = None
+    ) -> None:
+        """`candidates`: names of all that may be added; by default whatever the model lacks."""
+        self.start = start
+        found = missing(start) if candidates is None else _coordinates(start, candidates)
+        self.whole = everything(start, found)  # one kernel for all that may be added
+        self.train, self.held = Evidence(start, train), Evidence(start, held)
+        self._fitted: BaseFit | None = None
+
+    def known(self, model: Model) -> Known:
+        """What is known of the free parameters of `model`: the start's within 5 %, of added effects hardly anything."""
+        names, centre, prior, step = [], [], [], []
+        for name in default_free(model):
+            section, _, _key = name.partition(".")
+            if name in UNSEEN:
+                continue
+            if section in self.start.effects:
+                size = max(abs(self.start[name]), abs(self.start.specification(name).default))
+                middle, width, usual = self.start[name], 0.05 * size, 0.05 * size
+            else:
+                c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
+                middle, usual = _usual(c, model[name])
+                width = usual * c.prior
+            names.append(name)
+            centre.append(middle)
+            prior.append(width)
+            step.append(STEP * usual)
+        return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
+
+    def refit(self, model: Model, iterations: int = ITERATIONS) -> Model:
+        """All free parameters fitted to the training evidence."""
+        return fit_base(self.train, model, self.known(model), iterations)
+
+    def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
+        """The model on training and held-out evidence."""
+        return self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
+
+    def fit(self, model: Model) -> BaseFit:
+        """The model on training evidence; that of the last one asked for is kept."""
+        if self._fitted is None or self._fitted.model is not model:
+            self._fitted = base_fit(self.train, self.whole, model, self.known(model))
+        return self._fitted
+
+    def deviations(self, model: Model) -> dict[str, float]:
+        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
+        base = self.fit(model)
+        w = weights(self.train, base.residual, family_scales(self.train, base.residual))
+        A = base.slopes * w[:, None]
+        bread = np.linalg.inv(A.T @ A + np.eye(len(base.names)))
+        cov = cluster_robust(A, w * base.residual, self.train.block, bread, np.ones(len(base.names)))
+        std = np.sqrt(np.maximum(np.diag(cov), np.diag(bread))) * base.prior
+        named = zip(base.names, std, base.prior, strict=True)
+        return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
+
+    def extended(self, model: Model, h: Hypothesis) -> Model:
+        """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
+        known, moved = self.known(model), {}
+        for n, shift, p in zip(known.names, h.shift, known.prior, strict=True):
+            s = model.specification(n)
+            moved[n] = min(max(model[n] + shift * p, s.low), s.high)
+        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
+        return model.with_parameters(moved).with_effects([*model.effects, h.name], h.values)
+
+
+def _coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """Coordinates of effects of the model's library, by name."""
+    return {name: coordinates(model.library.find(name)) for name in names}
+
+
+def _usual(c: Coordinate, value: float) -> tuple[float, float]:
+    """Centre, and value per unit of the coordinate."""
+    if c.logarithmic:
+        return value if c.is_size else c.typical, max(abs(value), 1e-12)
+    return (c.neutral or 0.0), abs(c.scale)

@@ -1,0 +1,55 @@
+"""Effects that base parameters stand in for: the recordings cannot tell, but what is known of those parameters can.
+
+Refitted far from where they are known to be, base parameters do what an effect would do with all of them in their
+places. The way from one to the other is a valley along which predictions hardly change, too bent for one linear step:
+it is followed by fitting all together.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.coordinates import coordinates
+from pneumo_ros.discover.fitter import Fitter
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
+from pneumo_ros.discover.ranking import STRAINED
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+TRIED = 2
+ITERATIONS = 12
+
+
+def strain(base: BaseFit) -> float:
+    """Log likelihood that base parameters cost by their priors."""
+    return 0.5 * float(np.sum(base.offset**2))
+
+
+def followed(fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Array]]:
+    """Effects that may relieve the base, each fitted with all of it; hypotheses and their held-out residuals."""
+    best: dict[str, Hypothesis] = {}
+    for h in sorted(screened, key=lambda h: -h.relief):
+        if h.relief > 0.5 * STRAINED and not any(c.logarithmic for c in h.coordinates):
+            best.setdefault(h.name, h)
+    found = []
+    for h in list(best.values())[:TRIED]:
+        new = fitter.refit(fitter.extended(base.model, h), ITERATIONS)
+        found.append((_hypothesis(fitter, base, h.name, new), fitter.held.residual(new)))
+    return found
+
+
+def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> Hypothesis:
+    fit, own = fitter.fit(new), coordinates(new.library.find(name))
+    rows = [fit.names.index(n) for n in base.names]
+    columns = [fit.names.index(c.name) for c in own]
+    offset = fit.offset[rows]
+    std = fitter.deviations(new)
+    return Hypothesis(
+        name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, fit.residual,
+        likelihood=log_likelihood(fitter.train, fit.residual) - 0.5 * float(np.sum(offset**2)),
+        t=max(abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size),
+        relief=strain(base) - 0.5 * float(np.sum(offset**2)),
+        slopes=fit.slopes[:, columns] / np.array([c.prior for c in own]),
+    )  # fmt: skip
