@@ -1,34 +1,26 @@
 """Effects added by name: what the model has and what is new, fitted to recordings together.
 
-First along the measured signals, where candidates start from several shapes and sizes; then by multiple shooting over a
-part of the recordings (`identify.refit`), which alone determines when the piston breaks away: a static friction off by
-3 % costs next to nothing along the signals, and a hundred noise deviations in predictions over a second.
+First along the measured signals, where candidates start from several shapes and sizes; then by multiple shooting
+(`polishing`), which alone determines when the piston breaks away.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, compare
 from pneumo_ros.discover.coordinates import coordinates, starts
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import Hypothesis
+from pneumo_ros.discover.polishing import Progress, polish
 from pneumo_ros.discover.ranking import refine
 from pneumo_ros.errors import UsageError
-from pneumo_ros.identify.breakaway import find_breakaways
-from pneumo_ros.identify.refit import SEGMENT, Estimate, Refit, default_free, refit_segments
+from pneumo_ros.identify.refit import Estimate, default_free
 from pneumo_ros.identify.run import Run
-from pneumo_ros.identify.segments import cut_at, side_by_side
 from pneumo_ros.plant import Model
 
-Index = NDArray[np.int64]
-Progress = Callable[[float, str], None]
-
 HORIZON = 1.0  # s
-SEGMENTS = 80  # of all runs together: more take longer and change little
-BEFORE = 0.15  # s of a segment before its breakaway
 ROUGHLY = 40  # enough for the model without the effects, whose fit is slow and is not kept
 
 
@@ -110,53 +102,6 @@ def check_addable(model: Model, effects: Sequence[str]) -> None:
                 f"{name} cannot be fitted: none of its parameters says where it adds nothing, as "
                 "Parameter(..., neutral=0.0) does; put it into the machine file instead"
             )
-
-
-def polish(
-    fitter: Fitter,
-    model: Model,
-    runs: Sequence[Run],
-    most: int = SEGMENTS,
-    *,
-    threads: int = 2,
-    progress: Progress | None = None,
-) -> Refit:
-    """Multiple shooting from `model`, over at most `most` segments of all runs.
-
-    What is free and what was known of it are those of `fitter`; estimates tell what changed against its start.
-    """
-    known = fitter.known(model)
-    samples = max(round(SEGMENT / runs[0].sample_time), 2)
-    segments = cut_at(model, runs, telling(model, runs, samples, most), samples)
-    widths = dict(zip(known.names, known.prior.tolist(), strict=True))
-    centre = dict(zip(known.names, known.centre.tolist(), strict=True))
-    found = refit_segments(model, segments, known.names, widths, threads=threads, progress=progress)
-    estimates = {n: replace(e, before=centre[n], prior=widths[n]) for n, e in found.estimates.items()}
-    return replace(found, estimates=estimates)
-
-
-def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[Index]:
-    """Where segments of `samples` begin in each run: before breakaways, at most half of `most`; the others anywhere."""
-    slips = [_before_slips(model, run, samples) for run in runs]
-    some = _thinned(slips, most // 2)
-    rest = _thinned([side_by_side(run, samples) for run in runs], most - sum(map(len, some)))
-    return [np.sort(np.concatenate(pair)) for pair in zip(some, rest, strict=True)]
-
-
-def _before_slips(model: Model, run: Run, samples: int) -> Index:
-    """Grid points shortly before each breakaway from which on a segment is measured throughout."""
-    slips = find_breakaways(model, run) if "z" in model.states else []
-    early = round(BEFORE / run.sample_time)
-    starts = [slip.index - early for slip in slips if 0 <= slip.index - early < len(run) - samples]
-    return np.array([s for s in starts if run.measured[s : s + samples + 1].all()], dtype=np.int64)
-
-
-def _thinned(each: Sequence[Index], most: int) -> list[Index]:
-    """At most `most` of the grid points of all runs, spread evenly over them."""
-    run = np.repeat(np.arange(len(each)), [len(one) for one in each])
-    every = np.concatenate(each)
-    kept = np.unique(np.linspace(0, len(every) - 1, min(most, len(every))).round().astype(np.int64))
-    return [every[kept][run[kept] == i] for i in range(len(each))]
 
 
 def _with(fitter: Fitter, model: Model, name: str) -> Model:

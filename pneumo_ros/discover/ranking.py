@@ -240,17 +240,35 @@ def _distance(c: Coordinate, u: float) -> float:
 
 
 def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
+    """u of the next Gauss-Newton step, within the bounds."""
     K, ridge, offset = _system(base, h, h.u, C)
-    after = h.residual
-    x = np.zeros(K.shape[1])
+    after, first = h.residual, len(base.names)
+    step = np.zeros(len(h.u))
     for _ in range(3):
-        scale = family_scales(base.evidence, after)
-        x, _A, _bread = solve(K, here, weights(base.evidence, after, scale), ridge, offset)
-        after = here + K @ x
-    step = np.clip(x[len(base.names) :], -3.0, 3.0)
+        w = weights(base.evidence, after, family_scales(base.evidence, after))
+        x = _bounded(h, K, here, w, ridge, offset)
+        after, step = here + K @ x, x[first:]
     logs = np.array([c.logarithmic for c in h.coordinates])
-    step = np.where(logs, np.clip(step, -1.0, 1.0), step)
+    step = np.where(logs, np.clip(step, -1.0, 1.0), np.clip(step, -3.0, 3.0))
     return np.array([c.clip(v) for c, v in zip(h.coordinates, h.u + step, strict=True)])
+
+
+def _bounded(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
+    """The step of `solve` with the candidate's coordinates kept within their bounds, the others at their best beside.
+
+    A coordinate that leaves its range is held at the end of it, and all that is free is solved anew.
+    """
+    first, x = K.shape[1] - len(h.u), np.zeros(K.shape[1])
+    free = np.ones(len(x), dtype=bool)
+    while True:
+        x[free] = solve(K[:, free], here + K[:, ~free] @ x[~free], w, ridge[free], offset[free])[0]
+        wanted = h.u + x[first:]
+        inside = np.array([c.clip(v) for c, v in zip(h.coordinates, wanted, strict=True)])
+        across = np.append(np.zeros(first, dtype=bool), np.abs(inside - wanted) > 1e-9) & free
+        if not across.any():
+            return x
+        x[across] = (inside - h.u)[across[first:]]
+        free &= ~across
 
 
 def held_out(base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:

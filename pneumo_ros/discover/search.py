@@ -15,6 +15,7 @@ from pneumo_ros.discover.hypothesis import (
     huber,
     missing,
 )
+from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.ranking import FINALISTS, SHORTLIST, STRAINED, held_out, refine, screen, shortlist, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.strain import followed, strain
@@ -98,6 +99,7 @@ class Search:
             if last is not None and last.added is not None and pays(before, windowed(longer, self.held.runs)):
                 steps[-1:] = [last, replace(steps[-1], model=longer)]
                 model = longer
+            base, model = self.settled(base), self.settled(model)
         except KeyboardInterrupt:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
@@ -118,6 +120,15 @@ class Search:
             return model
         added = [name for name in model.effects if name not in self.start.effects]
         return with_values_of(model, polished(*made, self.fitter.deviations(model), added))
+
+    def settled(self, model: Model) -> Model:
+        """Recordings with too few breakaways to refit friction to: the model refitted to predict segments of them."""
+        if slips(model, self.train.runs, self.held.runs) is not None:
+            return model
+        self.progress(0.9, "refitting by prediction")
+        new = polish(self.fitter, model, self.train.runs).model
+        before, after = windowed(model, self.train.runs), windowed(new, self.train.runs)
+        return new if all(after[name] <= before[name] for name in before) else model
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""

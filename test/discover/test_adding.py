@@ -9,8 +9,9 @@ from rig import case as rig_case
 from rig.effects import Wish, build
 
 from pneumo_ros.diagnose.compare import Comparison
-from pneumo_ros.discover.adding import Adding, add, check_addable, telling
+from pneumo_ros.discover.adding import Adding, add, check_addable
 from pneumo_ros.discover.diagnosis import window_error
+from pneumo_ros.discover.polishing import telling
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.run import PARTS, Run, make_run
 from pneumo_ros.plant import load_model
