@@ -7,7 +7,7 @@ from pneumo_ros.control.motion.motion import Kind, Motion
 from pneumo_ros.control.motion.profile import Profile, braking
 from pneumo_ros.control.motion.trajectory import Trajectory
 from pneumo_ros.control.motion.vent import Vent
-from pneumo_ros.control.motion.waypoint import Waypoint
+from pneumo_ros.control.motion.waypoint import Waypoint, ahead
 
 __all__ = [
     "Capability",
@@ -18,6 +18,7 @@ __all__ = [
     "Trajectory",
     "Vent",
     "Waypoint",
+    "ahead",
     "braking",
     "require",
     "slowed",

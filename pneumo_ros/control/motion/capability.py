@@ -3,12 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.motion.limits import Limits
-from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.control.valve import ValveInverse
 
+Array = NDArray[np.float64]
 BISECTIONS = 40
+TINY = 1e-9  # m/s, and the room that is left at a speed at which a chamber cannot empty any more
 
 
 @dataclass(frozen=True)
@@ -30,20 +34,19 @@ class Capability:
         known = self.machine.supply_pressure if self.supply_pressure is None else self.supply_pressure
         return max(known, self.machine.atmospheric_pressure)
 
-    def force(self, speed: float, side: float) -> float:
+    def force(self, speed: ArrayLike, side: float) -> Array:
         """Largest force of the pressures [N] along `side`, +1 extends, at `speed` [m/s] >= 0 to that side."""
-        m = self.machine
+        m, v = self.machine, np.asarray(speed, dtype=float)
         filled, emptied = (m.area_a, m.area_b) if side > 0.0 else (m.area_b, m.area_a)
         c, d = self._flows(side)
-        high = self.supply if math.isinf(c) else self.supply * c / (c + filled * speed)
-        room = 1.0 if math.isinf(d) else 1.0 - emptied * speed / d
-        low = m.atmospheric_pressure / room if room > 0.0 else math.inf
-        return filled * high - emptied * low - side * m.atmosphere
+        high = self.supply / (1.0 + filled * v / c)
+        low = m.atmospheric_pressure / np.maximum(1.0 - emptied * v / d, TINY)
+        return np.asarray(filled * high - emptied * low - side * m.atmosphere)
 
-    def resistance(self, speed: float, side: float) -> float:
+    def resistance(self, speed: ArrayLike, side: float) -> Array:
         """Friction and load [N] against motion to `side` at `speed` [m/s] >= 0."""
-        m = self.machine
-        return m.coulomb_friction + (m.viscous_friction + m.drag * speed) * speed + side * m.load
+        m, v = self.machine, np.asarray(speed, dtype=float)
+        return np.asarray(m.coulomb_friction + (m.viscous_friction + m.drag * v) * v + side * m.load)
 
     def top_speed(self, side: float) -> float:
         """Largest steady speed [m/s] to `side`; 0 where the piston does not move at all."""
@@ -56,17 +59,20 @@ class Capability:
                 fast = middle
         return slow
 
-    def shortfall(self, wanted: Setpoint) -> float:
-        """Force [N] that `wanted` needs beyond what there is; negative where some is left.
+    def shortfall(self, velocity: ArrayLike, acceleration: ArrayLike) -> Array:
+        """Force [N] that motions [m/s, m/s2] need beyond what there is; negative where some is left.
 
-        While braking hard, the pressures push against the motion: then the force at rest is what there is.
+        While braking hard, the pressures push against the motion: then the force at rest is what there is. At rest
+        nobody can tell a start to one side from the end of a motion to the other: the easier one counts.
         """
-        side = 1.0 if wanted.velocity > 0.0 or (wanted.velocity == 0.0 and wanted.acceleration >= 0.0) else -1.0
-        speed = abs(wanted.velocity)
-        needed = side * self.machine.moving_mass * wanted.acceleration + self.resistance(speed, side)
-        if needed < 0.0:
-            return -needed - self.force(0.0, -side)
-        return needed - self.force(speed, side)
+        v, a = np.broadcast_arrays(np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float))
+        extending = self._lacking(np.maximum(v, 0.0), a, 1.0)
+        retracting = self._lacking(np.maximum(-v, 0.0), -a, -1.0)
+        return np.select([v >= TINY, v <= -TINY], [extending, retracting], np.minimum(extending, retracting))
+
+    def _lacking(self, speed: Array, gain: Array, side: float) -> Array:
+        needed = self.machine.moving_mass * gain + self.resistance(speed, side)
+        return np.where(needed < 0.0, -needed - self.force(0.0, -side), needed - self.force(speed, side))
 
     def _flows(self, side: float) -> tuple[float, float]:
         """c and d of the fully open valve [m3/s]."""
@@ -83,7 +89,7 @@ class Capability:
         As they are for a machine that does not move at all: there is nothing to fit them to.
         """
         speed = min(limits.speed, share * self.top_speed(1.0), share * self.top_speed(-1.0))
-        left = min(self.force(speed, side) - self.resistance(speed, side) for side in (1.0, -1.0))
+        left = min(float(self.force(speed, side) - self.resistance(speed, side)) for side in (1.0, -1.0))
         acceleration = min(limits.acceleration, share * left / self.machine.moving_mass)
         if speed <= 0.0 or acceleration <= 0.0:
             return limits

@@ -1,7 +1,7 @@
 """Where a piston may go, and how fast."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pneumo_ros.errors import UsageError
 
@@ -26,6 +26,10 @@ class Limits:
                 raise UsageError(f"limit of {name} is {value!r}; it takes a positive number")
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
             raise UsageError(f"limits of position are {self.low!r} to {self.high!r} m; the first must be the lesser")
+
+    def on_stroke(self, stroke: float) -> "Limits":
+        """The same within +-`stroke` / 2 [m]."""
+        return replace(self, low=max(self.low, -0.5 * stroke), high=min(self.high, 0.5 * stroke))
 
     def clip(self, position: float) -> float:
         """`position` [m], or the nearest one that is allowed."""

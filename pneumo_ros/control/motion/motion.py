@@ -39,12 +39,18 @@ class Motion:
         if self.kind is Kind.NONE:
             return None
         if self._drift and time - self._asked > self.pause:
+            self.reason = f"nothing came for {self.pause:g} s, and the last position stands"
             self._go(self._within(self.reference(time)), time)
         wanted = self._within(self.reference(time))
         if self.kind is not Kind.FREE and abs(wanted.position - measured) > self.following_error:
             self.restart(time, measured, f"the piston is {measured - wanted.position:+.3g} m off")
             wanted = self.reference(time)
         return wanted
+
+    @property
+    def asked(self) -> bool:
+        """Whether anything was asked for yet."""
+        return self.kind is not Kind.NONE
 
     # --- what comes in ----------------------------------------------------------------------------------------------
 
@@ -93,8 +99,8 @@ class Motion:
         self._go(Setpoint(measured), time)
 
     def restart(self, time: float, measured: float, reason: str) -> None:
-        """Begin anew from where the piston is: to the same target, but a trajectory is given up."""
-        if self.kind is Kind.TRAJECTORY:
+        """Begin anew from where the piston is: to the same target; a trajectory and a free reference end."""
+        if self.kind in (Kind.TRAJECTORY, Kind.FREE):
             self.rest(time, measured, reason)
         elif self.kind in (Kind.TARGET, Kind.STREAM):
             self.reason = reason

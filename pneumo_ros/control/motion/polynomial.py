@@ -1,9 +1,5 @@
 """Polynomials between two setpoints: linear, cubic through velocities, quintic through accelerations."""
 
-from collections.abc import Iterator
-
-import numpy as np
-
 from pneumo_ros.control.setpoint import Setpoint
 
 
@@ -13,33 +9,18 @@ class Polynomial:
     def __init__(self, begin: float, end: float, coefficients: tuple[float, ...]) -> None:
         """Up to six coefficients, position in m."""
         self.begin, self.end = begin, end
-        self._c = (*coefficients, *(0.0,) * (6 - len(coefficients)))
+        self.coefficients = (*coefficients, *(0.0,) * (6 - len(coefficients)))
 
     def __call__(self, time: float) -> Setpoint:
         """The setpoint at `time` [s], beyond the ends, too."""
         t = time - self.begin
-        c0, c1, c2, c3, c4, c5 = self._c
+        c0, c1, c2, c3, c4, c5 = self.coefficients
         return Setpoint(
             c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5)))),
             c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5))),
             2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5)),
             6.0 * c3 + t * (24.0 * c4 + t * 60.0 * c5),
         )
-
-    def extremes(self) -> Iterator[float]:
-        """Times [s] at which position, velocity or acceleration are largest or smallest: both ends, and turning points.
-
-        A turning point is a root of the derivative.
-        """
-        yield from (self.begin, self.end)
-        polynomial = np.polynomial.Polynomial(np.array(self._c, dtype=float)).trim()
-        for _ in range(3):
-            polynomial = polynomial.deriv().trim()
-            if polynomial.degree() < 1:
-                return
-            roots = polynomial.roots()
-            inner = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0.0) & (roots.real < self.end - self.begin)]
-            yield from (self.begin + float(root) for root in inner)
 
 
 def linear(begin: float, end: float, first: float, last: float) -> Polynomial:

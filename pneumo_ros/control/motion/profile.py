@@ -32,7 +32,7 @@ class Profile:
 
     def __call__(self, time: float) -> Setpoint:
         """The setpoint at `time` [s]; the first one before `begin`."""
-        if time >= self.end:
+        if time >= self.end or not self._starts:
             return Setpoint(self.target + self.drift * (time - self.begin), self.drift)
         for start, state, jerk in reversed(self._starts):
             if time >= start:

@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Sequence
+from itertools import pairwise
 
 from pneumo_ros.control.motion.polynomial import Polynomial, cubic, linear, quintic
 from pneumo_ros.control.motion.waypoint import Waypoint, check_waypoints
@@ -18,25 +19,19 @@ class Trajectory:
     velocity, linear otherwise; the start has both, but does not make a first point quintic that gives none.
     """
 
-    def __init__(self, start: Setpoint, begin: float, waypoints: Sequence[Waypoint], passed: float = 0.0) -> None:
-        """Points up to `passed` [s] after the trajectory's own start are left out, as their time is over.
-
-        Raises UsageError for points as `check_waypoints` does, if all of them are over, and if the first one is at 0 s
-        and more than 5 mm away from `start`.
-        """
+    def __init__(self, start: Setpoint, begin: float, waypoints: Sequence[Waypoint]) -> None:
+        """Raises UsageError as `check_waypoints` does, and if the first point is at 0 s and over 5 mm from `start`."""
         check_waypoints(waypoints)
         away = waypoints[0].position - start.position
-        if passed == waypoints[0].time == 0.0 and abs(away) > NEAR:
+        if waypoints[0].time == 0.0 and abs(away) > NEAR:
             raise UsageError(
                 f"the trajectory begins at {waypoints[0].position:.4g} m, {abs(away):.3g} m away from the piston; "
                 f"allowed is {NEAR:g} m, or give the first point the time to get there"
             )
-        ahead = [point for point in waypoints if point.time > passed]
-        if not ahead and passed > 0.0:
-            raise UsageError(f"the trajectory was over {passed - waypoints[-1].time:.3g} s ago")
+        later = [point for point in waypoints if point.time > 0.0]
         self.begin = begin
-        here = Waypoint(passed, start.position, start.velocity, start.acceleration)
-        self.pieces = [_piece(begin - passed, one, two) for one, two in zip([here, *ahead], ahead, strict=False)]
+        here = Waypoint(0.0, start.position, start.velocity, start.acceleration)
+        self.pieces = [_piece(begin, one, two) for one, two in pairwise([here, *later])]
         self.end = self.pieces[-1].end if self.pieces else begin
         self.goal = waypoints[-1].position
         self._begins = [piece.begin for piece in self.pieces]

@@ -38,3 +38,11 @@ def check_waypoints(waypoints: Sequence[Waypoint]) -> None:
         before = point.time
     if waypoints[-1].velocity:
         raise UsageError(f"the trajectory ends at {waypoints[-1].velocity:g} m/s; its last velocity must be 0")
+
+
+def ahead(waypoints: Sequence[Waypoint], passed: float) -> list[Waypoint]:
+    """The points later than `passed` [s], on a clock that starts there; UsageError if all of them are over."""
+    later = [point._replace(time=point.time - passed) for point in waypoints if point.time > passed]
+    if waypoints and not later:
+        raise UsageError(f"the trajectory was over {passed - waypoints[-1].time:.3g} s ago")
+    return later

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.control import Machine, Setpoint, ValveInverse
-from pneumo_ros.control.motion import Capability, Limits, Trajectory, Waypoint, require, slowed
+from pneumo_ros.control.motion import Capability, Limits, Trajectory, Waypoint, ahead, require, slowed
 from pneumo_ros.errors import UsageError
 
 ABLE = Capability(Machine(), ValveInverse())
@@ -48,11 +48,10 @@ def test_positions_velocities_and_accelerations_are_met_at_every_point() -> None
 
 def test_points_whose_time_is_over_are_left_out() -> None:
     points = [Waypoint(1.0, 0.1, 0.1), Waypoint(3.0, 0.3, 0.0)]
-    motion = Trajectory(Setpoint(0.15, 0.1), 20.0, points, passed=1.5)
-    assert motion(20.0)[:2] == pytest.approx((0.15, 0.1))
-    assert motion.end == pytest.approx(21.5)
+    assert ahead(points, 1.5) == [Waypoint(1.5, 0.3, 0.0)]
+    assert ahead(points, 0.0) == points
     with pytest.raises(UsageError, match=r"over 2 s ago"):
-        Trajectory(REST, 20.0, points, passed=5.0)
+        ahead(points, 5.0)
 
 
 @pytest.mark.parametrize(
