@@ -27,6 +27,7 @@ class Inputs:
     def __init__(self, node: "Controller", joint: str) -> None:
         """Move `joint`; other joints in the same messages are somebody else's."""
         self._node, self._joint = node, joint
+        self.refused = ""  # what was refused last, and why
         self._commands = readers.JointReader(joint, whole=True)
         node.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
         node.create_subscription(JointTrajectory, TRAJECTORY, self._trajectory, SUBSCRIBE)
@@ -77,7 +78,8 @@ class Inputs:
             act()
         except UsageError as error:
             self._node.loop.refused += 1
-            self._node.get_logger().warning(f"{what} refused: {error}", throttle_duration_sec=QUIET)
+            self.refused = f"{what} refused: {error}"
+            self._node.get_logger().warning(self.refused, throttle_duration_sec=QUIET)
 
 
 def _ambiguous() -> None:

@@ -176,6 +176,7 @@ class Controller(AxisNode):
         values: dict[str, object] = {"measurements": loop.measured, "rejected_inputs": loop.refused}
         values |= {"saturated_commands": loop.saturated, "restarts": loop.restarts, "voltage_V": loop.voltage}
         values |= {"mode": guide.mode.value, "motion": guide.motion.kind.value, "reason": guide.motion.reason}
+        values["refused"] = self.inputs.refused
         if self._heard is not None:
             values["measurement_age_s"] = (self._clock_ns() - self._heard) * 1e-9
         if loop.wanted is not None and guide.position is not None:
