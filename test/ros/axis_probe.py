@@ -71,7 +71,7 @@ class AxisProbe(Probe):
         """A position reference."""
         self.publisher(Float64, "position/reference").publish(Float64(data=position))
 
-    def command(
+    def command_joints(
         self,
         names: Sequence[str],
         positions: Sequence[float],

@@ -83,6 +83,12 @@ def test_vent_needs_a_supply_that_is_shut_off() -> None:
     for chamber in "ab":
         run.loop.press(chamber, 1.01e5)
     assert run.go() == 0.0
+    run.guide.vent(run.loop.time)
+    run.loop.press("a", 2e5)
+    assert run.go() == 5.0
+    run.guide.supplied(7e5, run.loop.time)
+    assert run.go() == 0.0
+    assert run.guide.mode is Mode.STOPPED
 
 
 def test_a_lost_supply_closes_the_valve_and_nothing_moves_when_it_is_back() -> None:

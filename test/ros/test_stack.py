@@ -53,10 +53,10 @@ def left(stack: Stack) -> AxisProbe:
 def test_joint_commands_are_looked_up_by_name_and_the_neighbour_stays(stack: Stack, left: AxisProbe) -> None:
     before = stack.right.position
     for _ in range(20):  # threshold -1: sent again and again, near the target, too
-        left.command(["boom", "piston", "gripper"], [9.0, 0.04, -9.0])
+        left.command_joints(["boom", "piston", "gripper"], [9.0, 0.04, -9.0])
         time.sleep(0.01)
     left.arrives(0.04)
-    left.command(["boom", "right_piston"], [0.3, 0.3])  # foreign joints alone
+    left.command_joints(["boom", "right_piston"], [0.3, 0.3])  # foreign joints alone
     left.rests(0.3)
     assert abs(stack.right.position - before) < 1e-9
 
@@ -64,16 +64,16 @@ def test_joint_commands_are_looked_up_by_name_and_the_neighbour_stays(stack: Sta
 @pytest.mark.parametrize("qos", [BEST_EFFORT, RELIABLE], ids=["best effort", "reliable"])
 def test_publishers_of_either_reliability_are_heard(stack: Stack, left: AxisProbe, qos: object) -> None:
     wanted = 0.02 if qos is BEST_EFFORT else 0.03
-    left.command(["piston"], [wanted], [math.nan], qos)  # a command interface that nobody has claimed is NaN
+    left.command_joints(["piston"], [wanted], [math.nan], qos)  # a command interface that nobody has claimed is NaN
     left.arrives(wanted)
 
 
 def test_short_arrays_and_numbers_that_are_none_are_refused(stack: Stack, left: AxisProbe) -> None:
     before, begin = stack.refused(), left.position
-    left.command(["boom", "piston", "gripper"], [0.2, 0.3])  # whose positions are these?
+    left.command_joints(["boom", "piston", "gripper"], [0.2, 0.3])  # whose positions are these?
     stack.process.wait_for("fewer positions than names")
-    left.command(["piston"], [math.nan])
-    left.command(["piston"], [2.0])
+    left.command_joints(["piston"], [math.nan])
+    left.command_joints(["piston"], [2.0])
     left.aim(math.inf)
     left.wait(lambda: stack.refused() >= before + 4, "four refusals")
     assert abs(left.position - begin) < 1e-3
@@ -84,7 +84,7 @@ def test_a_stream_with_velocities_is_followed_as_it_moves(left: AxisProbe) -> No
     worst, rate = 0.0, 2.0 * math.pi * 0.25
     while (passed := time.monotonic() - begin) < 4.0:
         wanted = start + 0.03 * (1.0 - math.cos(rate * passed))
-        left.command(["piston"], [wanted], [0.03 * rate * math.sin(rate * passed)])
+        left.command_joints(["piston"], [wanted], [0.03 * rate * math.sin(rate * passed)])
         worst = max(worst, abs(left.position - wanted))
         time.sleep(0.01)
     assert worst < 0.02

@@ -9,6 +9,7 @@ from pneumo_ros.control.motion import Capability, Limits, Motion, Trajectory, Ve
 from pneumo_ros.errors import UsageError
 
 NEAR = 0.01  # m; from nearer than that, a smooth reference is followed as it is
+DEAD = 1.3  # times the atmosphere's pressure: what a supply that is shut off has at most
 CHANGE = 0.02  # of the supply pressure, relative: less than that needs no new limits
 
 
@@ -49,6 +50,11 @@ class Guide:
         """Whether the supply pressure is known to be lost."""
         return self.supply is not None and self.supply < self.minimum_supply
 
+    @property
+    def _dead(self) -> float:
+        """Supply pressure [Pa abs] up to which the supply counts as shut off."""
+        return DEAD * self.law.machine.atmospheric_pressure
+
     # --- every measurement ------------------------------------------------------------------------------------------
 
     def wanted(self, time: float, position: float) -> Setpoint | None:
@@ -76,6 +82,8 @@ class Guide:
         if not math.isfinite(pressure):
             raise UsageError(f"supply pressure {pressure!r} is no finite number")
         before, self.supply = self.starved, pressure
+        if self._vent is not None and pressure > self._dead:
+            self.stop()  # or the valve that vents would drive the piston
         if self.position is not None and before and not self.starved and self.motion.asked:
             self._settle(time, "the supply pressure was lost")
         if self._fitted_for is None or abs(pressure - self._fitted_for) > CHANGE * self._fitted_for:
@@ -139,14 +147,13 @@ class Guide:
     def vent(self, time: float) -> None:
         """Empty both chambers, which needs a supply that is shut off: else the piston would be driven."""
         machine = self.law.machine
-        least = 1.3 * machine.atmospheric_pressure
         if self.supply is None and not self.vent_unseen:
             raise UsageError(
                 "no supply/pressure tells that the supply is shut off; shut it, then set vent_unseen to true"
             )
-        if self.supply is not None and self.supply > least:
+        if self.supply is not None and self.supply > self._dead:
             raise UsageError(
-                f"the supply pressure is {self.supply:.4g} Pa; shut it off first, to {least:.4g} Pa or less"
+                f"the supply pressure is {self.supply:.4g} Pa; shut it off first, to {self._dead:.4g} Pa or less"
             )
         self.mode, self._vent = Mode.VENTING, Vent(time, machine.atmospheric_pressure, self.law.valve.max_voltage)
 

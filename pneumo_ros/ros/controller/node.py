@@ -142,8 +142,11 @@ class Controller(AxisNode):
         self.loop.press(chamber, readers.pressure(data))
 
     def _watch(self) -> None:
-        """0 V, again and again, while no measurement comes."""
-        if self._heard is None or self._clock_ns() - self._heard < self.loop.timeout * 1e9:
+        """0 V, again and again, while no measurement comes. A clock that was set back counts from there."""
+        if self._heard is None:
+            return
+        self._heard = min(self._heard, self._clock_ns())
+        if self._clock_ns() - self._heard < self.loop.timeout * 1e9:
             return
         if not self._stale:
             self._stale = True
