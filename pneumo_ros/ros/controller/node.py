@@ -1,5 +1,6 @@
 """The controller: one valve command per joint state; what is asked of it comes in by `inputs` and `services`."""
 
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -10,7 +11,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.control import Law
-from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
+from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B, SETPOINT
 from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
 from pneumo_ros.ros.controller.guide import Mode
@@ -34,6 +35,7 @@ from pneumo_ros.ros.parameters import Values
 from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
+TELL = 0.01  # s between two setpoints that are sent
 CHECK = 0.02  # s between looks for silence
 
 
@@ -64,6 +66,11 @@ class Controller(AxisNode):
         self._stale = self._finished = False
         self._sending = threading.Lock()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
+        self._wanted, self._wanted_message = (
+            self.create_publisher(JointState, SETPOINT, PUBLISH),
+            messages.joint_state(self._joint, effort=False),
+        )
+        self._told = -math.inf  # loop time of the last setpoint that was sent
         self._listen()
         self.inputs, self._service_calls = Inputs(self, self._joint), Services(self)
         self._action = Following(self, FollowJointTrajectory) if FollowJointTrajectory else None
@@ -125,6 +132,14 @@ class Controller(AxisNode):
         if voltage is not None:
             self._heard, self._stamp, self._stale = now, sample.stamp, self._recovered()
             self.send(voltage)
+            self._tell_setpoint(self._stamp or self.get_clock().now().nanoseconds)
+
+    def _tell_setpoint(self, stamp: int) -> None:
+        """For plots; not with every measurement."""
+        wanted, now = self.loop.wanted, self.loop.time
+        if wanted is not None and now - self._told >= TELL:
+            self._told = now
+            self._wanted.publish(self._wanted_message.fill(stamp, wanted.position, wanted.velocity))
 
     def _recovered(self) -> bool:
         if self._stale:
