@@ -3,8 +3,21 @@
 from pneumo_ros.control.closed_loop import Record, closed_loop
 from pneumo_ros.control.gain import Gain
 from pneumo_ros.control.law import Law
+from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.pid import Pid
+from pneumo_ros.control.setpoint import Reference, Setpoint
 from pneumo_ros.control.valve import ValveInverse
 
-__all__ = ["Gain", "Law", "Measurement", "Pid", "Record", "ValveInverse", "closed_loop"]
+__all__ = [
+    "Gain",
+    "Law",
+    "Machine",
+    "Measurement",
+    "Pid",
+    "Record",
+    "Reference",
+    "Setpoint",
+    "ValveInverse",
+    "closed_loop",
+]

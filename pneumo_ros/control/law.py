@@ -6,7 +6,9 @@ from types import MappingProxyType
 from typing import ClassVar
 
 from pneumo_ros.control.gain import Gain
+from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.control.valve import ValveInverse
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
@@ -15,7 +17,8 @@ from pneumo_ros.nearest import unknown_name
 class Law(ABC):
     """A control law. Subclasses declare their gains as class attributes and read them as `self.<gain>`.
 
-    `valve` turns the wanted opening of the valve into its voltage; both it and the gains may change between steps.
+    `valve` turns the wanted opening of the valve into its voltage, `machine` is what is known of the plant; both may be
+    set, and gains tuned, between steps.
     """
 
     gains: ClassVar[Mapping[str, Gain]] = {}
@@ -24,9 +27,14 @@ class Law(ABC):
     def __init_subclass__(cls) -> None:
         cls.gains = MappingProxyType({name: value for name, value in vars(cls).items() if isinstance(value, Gain)})
 
-    def __init__(self, gains: Mapping[str, float] | None = None, valve: ValveInverse | None = None) -> None:
+    def __init__(
+        self,
+        gains: Mapping[str, float] | None = None,
+        valve: ValveInverse | None = None,
+        machine: Machine | None = None,
+    ) -> None:
         """Take `gains` by name, defaults for the others; raises UsageError as `tune` does."""
-        self.valve = valve or ValveInverse()
+        self.valve, self.machine = valve or ValveInverse(), machine or Machine()
         self.tune({name: gain.default for name, gain in self.gains.items()} | dict(gains or {}))
         self.reset()
 
@@ -41,8 +49,8 @@ class Law(ABC):
             setattr(self, name, value)
 
     @abstractmethod
-    def step(self, reference: float, measurement: Measurement) -> float:
-        """Voltage [V] that drives the position to `reference` [m]; call once per measurement, in order of time.
+    def step(self, setpoint: Setpoint, measurement: Measurement) -> float:
+        """Voltage [V] that makes the piston follow `setpoint`; call once per measurement, in order of time.
 
         A measurement no later than the one before is a repetition and gets the same answer.
         """

@@ -1,17 +1,17 @@
-"""Wanted positions as functions of time."""
+"""Wanted motions as functions of time."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
+from pneumo_ros.control.setpoint import Reference, Setpoint
 from pneumo_ros.errors import UsageError
-
-Reference = Callable[[float], float]  # time [s] -> position [m]
 
 
 def constant(position: float) -> Reference:
     """Always `position` [m]; UsageError unless it is finite."""
     _finite(position=position)
-    return lambda time: position
+    held = Setpoint(float(position))
+    return lambda time: held
 
 
 def steps(levels: Sequence[float], hold: float) -> Reference:
@@ -23,7 +23,7 @@ def steps(levels: Sequence[float], hold: float) -> Reference:
     for level in levels:
         _finite(levels=level)
     _positive(hold=hold)
-    held = tuple(float(level) for level in levels)
+    held = tuple(Setpoint(float(level)) for level in levels)
     return lambda time: held[int(math.floor(time / hold + 1e-9)) % len(held)]
 
 
@@ -31,7 +31,12 @@ def sine(amplitude: float, frequency: float, offset: float = 0.0, phase: float =
     """offset + amplitude sin(2 pi frequency t + phase): m, Hz, m, rad; UsageError unless all are finite."""
     _finite(amplitude=amplitude, frequency=frequency, offset=offset, phase=phase)
     rate = 2.0 * math.pi * frequency
-    return lambda time: offset + amplitude * math.sin(rate * time + phase)
+
+    def motion(time: float) -> Setpoint:
+        up, across = amplitude * math.sin(rate * time + phase), amplitude * math.cos(rate * time + phase)
+        return Setpoint(offset + up, rate * across, -(rate**2) * up, -(rate**3) * across)
+
+    return motion
 
 
 def _finite(**values: float) -> None:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pneumo_ros.control import Law, Measurement, Pid, ValveInverse
+from pneumo_ros.control import Law, Measurement, Pid, Setpoint, ValveInverse
 from pneumo_ros.errors import UsageError
 
 LAWS = [Pid]
@@ -43,25 +43,25 @@ def test_a_repeated_measurement_gets_the_same_answer_and_changes_nothing(kind: t
     one, other = kind(), kind()
     for k in range(20):
         sample = Measurement(1e-3 * k, 1e-4 * k)
-        answer = one.step(0.05, sample)
-        assert one.step(0.05, sample) == answer
-        assert other.step(0.05, sample) == answer
+        answer = one.step(Setpoint(0.05), sample)
+        assert one.step(Setpoint(0.05), sample) == answer
+        assert other.step(Setpoint(0.05), sample) == answer
 
 
 @pytest.mark.parametrize("kind", LAWS)
 def test_reset_forgets_everything_but_the_gains(kind: type[Law]) -> None:
     law, fresh = kind(), kind()
     for k in range(50):
-        law.step(0.2, Measurement(1e-3 * k, 1e-3 * k))
+        law.step(Setpoint(0.2), Measurement(1e-3 * k, 1e-3 * k))
     law.reset()
-    assert [law.step(0.1, Measurement(1e-3 * k, 0.0)) for k in range(5)] == [
-        fresh.step(0.1, Measurement(1e-3 * k, 0.0)) for k in range(5)
+    assert [law.step(Setpoint(0.1), Measurement(1e-3 * k, 0.0)) for k in range(5)] == [
+        fresh.step(Setpoint(0.1), Measurement(1e-3 * k, 0.0)) for k in range(5)
     ]
 
 
 @pytest.mark.parametrize("kind", LAWS)
 def test_voltages_stay_within_the_limits(kind: type[Law]) -> None:
     law = kind(valve=ValveInverse(max_voltage=4.0))
-    answers = [law.step(r, Measurement(1e-3 * k, 0.0)) for k, r in enumerate([10.0] * 50 + [-10.0] * 50)]
+    answers = [law.step(Setpoint(r), Measurement(1e-3 * k, 0.0)) for k, r in enumerate([10.0] * 50 + [-10.0] * 50)]
     assert max(answers) == 4.0
     assert min(answers) == -4.0

@@ -13,7 +13,7 @@ from ros.processes import Running, node, running
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from pneumo_ros.control import Measurement, Pid
+from pneumo_ros.control import Measurement, Pid, Setpoint
 
 NAME = "piston"
 
@@ -73,7 +73,7 @@ def test_every_measurement_gets_the_command_of_the_law(tmp_path: Path) -> None:
         speeds = [None] * 3 + [0.02] * 3
         first = 1_002_000_000
         expected = [
-            law.step(0.05, Measurement((t - first) * 1e-9, y, v))
+            law.step(Setpoint(0.05), Measurement((t - first) * 1e-9, y, v))
             for t, y, v in zip(times, positions, speeds, strict=True)
         ]
         assert answers == expected
@@ -181,7 +181,7 @@ from pneumo_ros.ros.controller import main, settings
 class Spy(Pid):
     reads_pressures = True
 
-    def step(self, reference, measurement):
+    def step(self, setpoint, measurement):
         return 1e-5 * (measurement.pressure_a or 0.0) - 1e-6 * (measurement.pressure_b or 0.0)
 
 

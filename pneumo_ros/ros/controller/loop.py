@@ -2,8 +2,7 @@
 
 import math
 
-from pneumo_ros.control import Law, Measurement
-from pneumo_ros.control.reference import Reference
+from pneumo_ros.control import Law, Measurement, Reference, Setpoint
 
 JUMP = 1.0  # s; a stamp this much before the last one means that the clock was set, not that messages overtook
 
@@ -14,7 +13,7 @@ class Loop:
     def __init__(self, law: Law, reference: Reference | None, timeout: float) -> None:
         """`reference` None: it is `wanted`, set from outside. `timeout` [s] between measurements counts as a pause."""
         self.law, self.reference, self.timeout = law, reference, timeout
-        self.wanted: float | None = None
+        self.wanted: Setpoint | None = None
         self.position: float | None = None
         self.voltage = 0.0
         self.measured = self.refused = self.saturated = self.restarts = 0
@@ -27,7 +26,7 @@ class Loop:
         if not math.isfinite(position):
             self.refused += 1
             return False
-        self.wanted = position
+        self.wanted = Setpoint(position)
         return True
 
     def measure(self, stamp: int, position: float, velocity: float | None) -> float | None:

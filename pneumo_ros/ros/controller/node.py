@@ -16,11 +16,12 @@ from pneumo_ros.ros.controller.loop import Loop
 from pneumo_ros.ros.controller.settings import (
     LAWS,
     SETTINGS,
+    absent,
     gains_of,
+    machine_of,
     of_a_machine_file,
     reference_of,
     valve_of,
-    without_dead_zone,
 )
 from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
@@ -44,8 +45,8 @@ class Controller(AxisNode):
         """
         super().__init__("controller", SETTINGS)
         values = self.parameters
-        values.update(without_dead_zone(values.given))
-        foreign = of_a_machine_file(values.given)
+        values.update(absent(values.begun_with))
+        foreign = of_a_machine_file(values.begun_with)
         values.refuse_unknown(lambda name: name in foreign or tolerated(name))
         self._joint, self._law = values["joint_name"], values["law"]
         self.loop = Loop(self._make_law(values.values()), reference_of(values.values()), values["measurement_timeout"])
@@ -72,7 +73,7 @@ class Controller(AxisNode):
     # --- parameters -------------------------------------------------------------------------------------------------
 
     def _make_law(self, values: Values) -> Law:
-        return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values))
+        return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
 
     def _check(self, values: Values) -> None:
         self._make_law(values)
@@ -81,7 +82,7 @@ class Controller(AxisNode):
     def _apply(self, changed: Values) -> None:
         values = {**self.parameters.values(), **changed}
         self.loop.law.tune(gains_of(self._law, values))
-        self.loop.law.valve = valve_of(values)
+        self.loop.law.valve, self.loop.law.machine = valve_of(values), machine_of(values)
         self.loop.timeout = values["measurement_timeout"]
         if any(name.startswith("reference.") for name in changed):
             self.loop.reference = reference_of(values)
@@ -154,7 +155,7 @@ class Controller(AxisNode):
         if self._heard is not None:
             values["measurement_age_s"] = (self._clock_ns() - self._heard) * 1e-9
         if loop.wanted is not None and loop.position is not None:
-            values["position_error_m"] = loop.wanted - loop.position
+            values["position_error_m"] = loop.wanted.position - loop.position
         missing = "no measurement yet" if self._heard is None else "measurements stay away: sending 0 V"
         warnings = [missing] if self._heard is None or self._stale else []
         if loop.wanted is None:
