@@ -3,6 +3,7 @@
 from pneumo_ros.control.closed_loop import Record, closed_loop
 from pneumo_ros.control.gain import Gain
 from pneumo_ros.control.law import Law
+from pneumo_ros.control.laws import LAWS
 from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.pid import Pid
@@ -10,6 +11,7 @@ from pneumo_ros.control.setpoint import Reference, Setpoint
 from pneumo_ros.control.valve import ValveInverse
 
 __all__ = [
+    "LAWS",
     "Gain",
     "Law",
     "Machine",
