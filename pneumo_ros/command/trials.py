@@ -16,9 +16,11 @@ if TYPE_CHECKING:
 SAMPLE_TIME = 1e-3  # s
 AMPLITUDE, STEP = 0.15, 0.03  # of the stroke: 0.3 m and 60 mm of the default machine
 SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of what the machine does at full voltage
+MOVE_FORCE = 0.3  # greatest force that accelerates, of what the supply makes in the smaller chamber
 HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass of the other machine that the gains must suit
 HOLD = 4.0  # s after each move
 RUN_UP = 0.2  # of a period of the sine, not judged
+JUDGED = 8.0  # s of the sine at least, in whole periods
 TOLERANCE = 3e-4  # m
 
 
@@ -38,9 +40,16 @@ def task_for(
     """What is not given follows from stroke and speed of the machine."""
     height = amplitude or AMPLITUDE * model["piston.stroke"]
     way, top = step or STEP * model["piston.stroke"], top_speed(model)
-    return Task(
-        height, frequency or SINE_SPEED * top / (2.0 * np.pi * height), way, 1.875 * way / (MOVE_SPEED * top)
-    )  # a move of least jerk reaches 1.875 times its mean speed
+    return Task(height, frequency or SINE_SPEED * top / (2.0 * np.pi * height), way, _duration(model, way, top))
+
+
+def _duration(model: "Model", way: float, top: float) -> float:
+    """A move of least jerk reaches 1.875 way / T and 5.77 way / T^2."""
+    supply = model["air.supply_pressure"] - model["air.atmospheric_pressure"]
+    force = min(model["piston.area_a"], model["piston.area_b"]) * supply
+    return float(
+        max(1.875 * way / (MOVE_SPEED * top), np.sqrt(5.77 * way * model["piston.mass"] / (MOVE_FORCE * force)))
+    )
 
 
 def top_speed(model: "Model", voltage: float = 10.0) -> float:
@@ -78,13 +87,13 @@ def harsher(model: "Model") -> "Model":
 
 
 def trials_of(model: "Model", task: Task) -> list[Trial]:
-    """One and a fifth periods of the sine and six moves, each on the machine and on the harsher one."""
-    period, levels = 1.0 / task.frequency, [k * task.step for k in (0, 1, 0, 1, 2, 1, 0)]
+    """The sine and six moves, each on the machine and on the harsher one."""
+    period, levels = 1.0 / task.frequency, [k * task.step for k in (-1, 0, -1, 0, 1, 0, -1)]
+    whole = max(np.ceil(JUDGED / period), 1.0)
     wave, ways = sine(task.amplitude, task.frequency), moves(levels, HOLD + task.duration, task.duration)
     hold = HOLD + task.duration
     found = []
     for machine in (model, harsher(model)):
-        plant = partial(stepper, machine)
-        found.append(Trial(plant, wave, (1.0 + RUN_UP) * period, RUN_UP * period))
-        found.append(Trial(plant, ways, len(levels) * hold, hold=hold, unit=TOLERANCE))
+        found.append(Trial(partial(stepper, machine), wave, (whole + RUN_UP) * period, RUN_UP * period))
+        found.append(Trial(partial(stepper, machine, levels[0]), ways, len(levels) * hold, hold=hold, unit=TOLERANCE))
     return found

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pneumo_ros.control.tuning import Search
     from pneumo_ros.plant import Model
 
-EVALUATIONS = 60
+EVALUATIONS = 80
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,8 @@ SMALLEST = 1e-3  # N, least friction level that is divided by
 HEADROOM = 1.5  # most that a correction may bend the bristles, over what F_s does: F_s may be known too low
 TELLING = 0.02  # m/s, sliding at this speed tells the level; below, the Stribeck curve is too steep
 LEAST, MOST = 0.3, 3.0  # range of the learnt scale
+LOADED = 0.5  # largest bias, of the force that the supply can make
+FORGETTING = 0.5  # 1/s, while it sticks: what was learnt at an end stop must not hold it there
 
 
 class FrictionObserver:
@@ -23,7 +25,8 @@ class FrictionObserver:
 
     For v held over a sample the equation is linear in z, piece by piece, and the step is its exact solution: stable at
     any speed and sample time, where an explicit one at 1 kHz is not above 0.1 m/s. sigma_1 is left out of F: it damps
-    the bristles' 84 Hz, which no valve follows. `learn` scales sigma_0 z to the force that sliding is seen to take.
+    the bristles' 84 Hz, which no valve follows. `learn` scales sigma_0 z, and adds a bias, to the force that
+    sliding is seen to take: friction changes its sign with the motion, a load does not.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -32,8 +35,8 @@ class FrictionObserver:
         self.reset()
 
     def reset(self) -> None:
-        """Slack bristles."""
-        self.z, self.sliding, self.scale = 0.0, False, 1.0
+        """Slack bristles, nothing learnt."""
+        self.z, self.sliding, self.scale, self.bias = 0.0, False, 1.0, 0.0
 
     def level(self, velocity: float) -> float:
         """g(v) [N], the friction force of steady sliding without what grows with speed."""
@@ -56,17 +59,30 @@ class FrictionObserver:
         if self.sliding:
             steady = math.copysign(self.level(velocity) / self.machine.bristle_stiffness, velocity)
             self.z = steady + (self.z - steady) * math.exp(-velocity / steady * left)
+        else:
+            self._forget(1.0 - math.exp(-FORGETTING * dt))
         return self.force(velocity)
 
     def force(self, velocity: float) -> float:
         """F [N] at the present deflection."""
-        return self.scale * self.machine.bristle_stiffness * self.z + self.running(velocity)
+        return self.scale * self.machine.bristle_stiffness * self.z + self.bias + self.running(velocity)
 
     def learn(self, measured: float, velocity: float, share: float) -> None:
-        """Scale the bristles' force by `share` of what is lacking to the `measured` friction [N]; sliding only."""
+        """Take up `share` of what is lacking to the `measured` friction [N]; only where sliding tells it.
+
+        Half goes to the scale, half to the bias; motion in both directions tells them apart (normalised least mean
+        squares: B. Widrow and S. D. Stearns, Adaptive Signal Processing, 1985).
+        """
         if self.sliding and abs(velocity) > TELLING:
-            seen = (measured - self.running(velocity)) / (self.machine.bristle_stiffness * self.z)
-            self.scale = min(max(self.scale + share * (seen - self.scale), LEAST), MOST)
+            bristles, level = self.machine.bristle_stiffness * self.z, self.level(velocity)
+            lacking = share * (measured - self.force(velocity)) / (bristles * bristles + level * level)
+            self.scale = min(max(self.scale + lacking * bristles, LEAST), MOST)
+            most = LOADED * self.machine.area_a * (self.machine.supply_pressure - self.machine.atmospheric_pressure)
+            self.bias = min(max(self.bias + lacking * level * level, -most), most)
+
+    def _forget(self, share: float) -> None:
+        self.scale += share * (1.0 - self.scale)
+        self.bias -= share * self.bias
 
     def _bend(self, velocity: float, dt: float, correction: float) -> float:
         """Bend the bristles elastically; returns for how long [s] of `dt`. What is left they slip."""

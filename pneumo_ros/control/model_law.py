@@ -13,6 +13,7 @@ from pneumo_ros.control.setpoint import Setpoint
 
 REOPEN = 1.5  # times the tolerance
 REST = 0.02  # s without motion after which the piston counts as resting
+WIDEST = 4  # times that the tolerance may double
 STUCK = 0.05  # s without motion after which it will not go on by itself
 FREE_STOPS = 6  # stops at wrong places before the tolerance widens; a detour makes two
 
@@ -85,7 +86,7 @@ class ModelLaw(Law):
     @property
     def patience(self) -> float:
         """The tolerance [m], as far as stops at wrong places have widened it."""
-        return float(self.tolerance * 2.0 ** min(max(self._stops - FREE_STOPS, 0), 10))
+        return float(self.tolerance * 2.0 ** min(max(self._stops - FREE_STOPS, 0), WIDEST))
 
     def _watch(self, setpoint: Setpoint, position: float, dt: float) -> None:
         """For how long [s] the piston has not moved by `rest_span`, and how often it stopped since the last goal."""

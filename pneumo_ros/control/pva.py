@@ -12,11 +12,13 @@ class Pva(ModelLaw):
 
     u_d and F_d are what the model needs for the wanted motion: F_d = M a_d + F_friction(v_d) + F_load with the
     friction of bristles that follow v_d, and u_d the opening that holds the chambers' force at v_d; the pressures feed
-    back F = A_a p_a - A_b p_b - F_atm. The integral stands while the opening is saturated or the wanted velocity is not
-    zero, and begins anew when the piston has arrived. Sources: S. R. Pandian, F. Takemura, Y. Hayakawa and S. Kawamura,
-    Pressure Observer-Controller Design for Pneumatic Cylinder Actuators, IEEE/ASME Trans. Mechatronics 7 (2002), and
-    J. Wang, J. Pu and P. Moore, A Practical Control Strategy for Servo-Pneumatic Actuator Systems, Control Engineering
-    Practice 7 (1999) (PVA); the friction of the wanted motion: Canudas de Wit et al. 1995, sec. V.
+    back F = A_a p_a - A_b p_b - F_atm, as long as motion is wanted: at rest the force may be anything that friction
+    holds. The integral works at rest only, while the opening is not saturated, and ends when the piston has arrived.
+
+    Sources: S. R. Pandian, F. Takemura, Y. Hayakawa and S. Kawamura, Pressure Observer-Controller Design for Pneumatic
+    Cylinder Actuators, IEEE/ASME Trans. Mechatronics 7 (2002), and J. Wang, J. Pu and P. Moore, A Practical Control
+    Strategy for Servo-Pneumatic Actuator Systems, Control Engineering Practice 7 (1999) (PVA); Canudas de Wit et al.
+    1995 (friction of the wanted motion).
     """
 
     tuned = ("proportional", "derivative", "force", "acceleration", "integral", "bandwidth")
@@ -41,8 +43,9 @@ class Pva(ModelLaw):
         wanted = opening(m, state.air, setpoint.velocity, 0.0) + self.proportional * e + self._integral
         wanted += self.derivative * (setpoint.velocity - state.velocity)
         wanted += self.acceleration * (setpoint.acceleration - state.acceleration)
-        wanted += self.force * (force - state.air.force)
-        if setpoint.velocity == 0.0 and self.valve.clip(wanted) == wanted:
+        if setpoint.velocity != 0.0:
+            return wanted + self.force * (force - state.air.force)
+        if self.valve.clip(wanted) == wanted:
             most = self.integral_limit
             self._integral = min(max(self._integral + self.integral * e * dt, -most), most)
         return wanted

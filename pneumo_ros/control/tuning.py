@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pneumo_ros.control.closed_loop import SteppedPlant, closed_loop
 from pneumo_ros.control.figures import arrivals, tracking
 from pneumo_ros.control.law import Law
@@ -10,9 +12,10 @@ from pneumo_ros.control.sensors import NoisySensors
 from pneumo_ros.control.setpoint import Reference
 from pneumo_ros.errors import NumericalError
 
-FACTORS = (2.0, 1.4, 1.2)  # by which a gain is changed, coarse ones first
+EXPLORED, SPREAD = 0.5, 5.0  # share of the evaluations that are drawn, within so many times of where they begin
+FACTORS = (1.5, 1.2)  # by which a gain is changed afterwards, the coarse one first
 WORST = 100.0  # cost of a run that fails
-NOISE_SEED = 1
+NOISE_SEED, DRAW_SEED = 1, 0
 
 
 @dataclass(frozen=True)
@@ -58,8 +61,9 @@ def _cost_of(law: Law, trial: Trial, weights: Weights) -> float:
 
 
 class Search:
-    """Each of a law's `tuned` gains in turn is multiplied and divided by a factor, and kept where that pays; when none
-    does, the factor becomes smaller. Pattern search of R. Hooke and T. A. Jeeves, J. ACM 8 (1961), without its leaps.
+    """First a law's `tuned` gains are drawn at random, log-uniformly around where they begin. Then, from the best,
+    each in turn is multiplied and divided by a factor, and kept where that pays; when none does, the factor becomes
+    smaller: the pattern search of R. Hooke and T. A. Jeeves, J. ACM 8 (1961), without its leaps.
     """
 
     def __init__(
@@ -78,21 +82,35 @@ class Search:
 
     def run(self) -> dict[str, float]:
         """The gains of least cost, once nothing pays any more or all evaluations are spent."""
+        self._explore()
         for factor in FACTORS:
             while self.count < self.evaluations and self._round(factor):
                 pass
         return self.gains
+
+    def _explore(self) -> None:
+        begin, random = dict(self.gains), np.random.default_rng(DRAW_SEED)
+        while self.count < EXPLORED * self.evaluations:
+            factors = SPREAD ** random.uniform(-1.0, 1.0, len(begin))
+            self._take({name: self._rounded(name, f * begin[name]) for name, f in zip(begin, factors, strict=True)})
 
     def _round(self, factor: float) -> bool:
         paid = [self._try(name, factor) or self._try(name, 1.0 / factor) for name in self._kind.tuned]
         return any(paid)
 
     def _try(self, name: str, factor: float) -> bool:
-        gain = self._kind.gains[name]
-        value = float(f"{min(max(self.gains[name] * factor, gain.low), gain.high):.3g}")
+        value = self._rounded(name, self.gains[name] * factor)
         if value == self.gains[name] or self.count >= self.evaluations:
             return False
-        candidate = {**self.gains, name: value}
+        return self._take({**self.gains, name: value})
+
+    def _rounded(self, name: str, value: float) -> float:
+        """A gain within its range, to three digits: a control file is read by people."""
+        gain = self._kind.gains[name]
+        return float(f"{min(max(value, gain.low), gain.high):.3g}")
+
+    def _take(self, candidate: dict[str, float]) -> bool:
+        """Keep the candidate if it is the best so far."""
         found = self._cost(candidate)
         if found < self.least:
             self.gains, self.least = candidate, found
