@@ -23,9 +23,11 @@ class Law(ABC):
 
     gains: ClassVar[Mapping[str, Gain]] = {}
     reads_pressures: ClassVar[bool] = False  # whether `step` uses the pressures of a measurement
+    tuned: ClassVar[tuple[str, ...]] = ()  # gains that are found by simulation, the ones that matter most first
 
     def __init_subclass__(cls) -> None:
-        cls.gains = MappingProxyType({name: value for name, value in vars(cls).items() if isinstance(value, Gain)})
+        own = {name: value for name, value in vars(cls).items() if isinstance(value, Gain)}
+        cls.gains = MappingProxyType({**own, **{n: g for n, g in cls.gains.items() if n not in own}})
 
     def __init__(
         self,
@@ -35,6 +37,8 @@ class Law(ABC):
     ) -> None:
         """Take `gains` by name, defaults for the others; raises UsageError as `tune` does."""
         self.valve, self.machine = valve or ValveInverse(), machine or Machine()
+        self._time: float | None = None
+        self._answer = 0.0
         self.tune({name: gain.default for name, gain in self.gains.items()} | dict(gains or {}))
         self.reset()
 
@@ -48,13 +52,25 @@ class Law(ABC):
         for name, value in checked.items():
             setattr(self, name, value)
 
-    @abstractmethod
     def step(self, setpoint: Setpoint, measurement: Measurement) -> float:
         """Voltage [V] that makes the piston follow `setpoint`; call once per measurement, in order of time.
 
         A measurement no later than the one before is a repetition and gets the same answer.
         """
+        dt = 0.0 if self._time is None else measurement.time - self._time
+        if self._time is None or dt > 0.0:
+            self._time, self._answer = measurement.time, self.respond(setpoint, measurement, dt)
+        return self._answer
 
-    @abstractmethod
     def reset(self) -> None:
         """Forget everything but the gains."""
+        self._time, self._answer = None, 0.0
+        self.forget()
+
+    @abstractmethod
+    def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
+        """Voltage [V] for a measurement `dt` [s] after the last one, 0 s for the first."""
+
+    @abstractmethod
+    def forget(self) -> None:
+        """Forget what the law itself keeps."""

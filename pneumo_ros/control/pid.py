@@ -16,6 +16,7 @@ class Pid(Law):
     until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever.
     """
 
+    tuned = ("proportional", "derivative", "integral", "tolerance")
     proportional = Gain(100.0, "V/m", "K_p, opening per position error", 0.0, 10000.0)
     integral = Gain(0.6, "V/(m s)", "K_i, opening per integrated position error", 0.0, 10000.0)
     derivative = Gain(50.0, "V s/m", "K_d, opening per velocity error", 0.0, 1000.0)
@@ -24,24 +25,17 @@ class Pid(Law):
     rest_speed = Gain(0.01, "m/s", "speed below which the piston counts as resting", 0.0, 1.0)
     bandwidth = Gain(200.0, "rad/s", "of the velocity estimate", 1.0, 5000.0)
 
-    def reset(self) -> None:
-        """Forget the integral, the velocity estimate and the last answer."""
+    def forget(self) -> None:
+        """Forget the integral and the velocity estimate."""
         self._piston = VelocityEstimator(self.bandwidth)
         self._integral, self._resting = 0.0, False
-        self._time: float | None = None
-        self._answer = 0.0
 
-    def step(self, setpoint: Setpoint, measurement: Measurement) -> float:
-        """Voltage [V]; see `Law.step`."""
-        dt = 0.0 if self._time is None else measurement.time - self._time
-        if self._time is not None and dt <= 0.0:
-            return self._answer
-        self._time = measurement.time
+    def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
+        """Voltage [V]; see `Law.respond`."""
         velocity, wanted = self._velocity(measurement), setpoint.velocity
         error = setpoint.position - measurement.position
         self._resting = self._may_rest(error, velocity, wanted)
-        self._answer = 0.0 if self._resting else self._act(error, wanted - velocity, dt)
-        return self._answer
+        return 0.0 if self._resting else self._act(error, wanted - velocity, dt)
 
     def _velocity(self, measurement: Measurement) -> float:
         self._piston.bandwidth = self.bandwidth

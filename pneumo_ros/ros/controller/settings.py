@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pneumo_ros.control import Law, Machine, Pid, Reference, ValveInverse
+from pneumo_ros.control import LAWS, Machine, Reference, ValveInverse
 from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.plant import load_model
@@ -14,7 +14,6 @@ from pneumo_ros.ros.controller.guiding import limits_of
 from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
-LAWS: Mapping[str, type[Law]] = {"pid": Pid}
 SHAPES = ("topic", "constant", "steps", "sine")
 _DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
 

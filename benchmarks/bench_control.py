@@ -1,0 +1,105 @@
+"""Control laws on the default machine and on others: tracking, arrival, valve activity; published protocols; time.
+
+All laws have the gains of config/control, found by one procedure (`pneumo tune`), and know the default machine file,
+whatever the plant is. Sensors: 10 um and 300 Pa of noise, no velocity; 1 kHz. The sine is 0.3 m, 0.05 Hz; the moves are
+60 mm in 1 s, held for 19 s.
+"""
+
+import argparse
+import time
+
+import control_cases as cases
+import numpy as np
+from control_cases import AXIS, HOLD, SINE, STEADY, follow, shipped
+
+from pneumo_ros.control import LAWS, Measurement
+from pneumo_ros.control.figures import arrivals, tracking
+from pneumo_ros.control.reference import sine, steps
+from pneumo_ros.plant import load_model
+
+
+def main() -> None:
+    """Print what was asked for, by default all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", choices=("plants", "published", "discovery", "time"), help="one of the tables")
+    only = parser.parse_args().only
+    tables = {"plants": plants, "published": published, "discovery": discovery, "time": step_time}
+    for name, table in tables.items():
+        if only in (None, name):
+            table()
+
+
+def plants() -> None:
+    """Every law on every plant."""
+    head = f"{'plant':21} {'law':13} {'rms':>6} {'peak':>7} {'V/s':>6} {'slips':>6}"
+    print(f"{head} | {'steady':>7} {'settling':>9} {'hunting':>8}   [mm, s]; steady, hunting: worst of 4 moves")
+    rms = {}
+    for name, plant in cases.PLANTS.items():
+        for law in LAWS:
+            along = tracking(follow(plant, shipped(law), SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN)
+            ends = arrivals(follow(plant, shipped(law), cases.STEPS, 5 * HOLD)[0], HOLD, STEADY)
+            rms[name, law] = along.rms
+            slow = max(e.settling for e in ends)
+            settled = f"{slow:7.2f} s" if slow < HOLD else f"{'never':>9}"
+            print(
+                f"{name:21} {law:13} {1e3 * along.rms:6.2f} {1e3 * along.peak:7.2f} {along.activity:6.0f} "
+                f"{along.breakaways:6d} | {1e3 * max(e.error for e in ends):7.2f} {settled} "
+                f"{1e3 * max(e.motion for e in ends):8.3f}",
+                flush=True,
+            )
+    ratio = rms["nominal", "pid"] / rms["nominal", "cascade"]
+    print(
+        f"cascade, nominal: {1e3 * rms['nominal', 'cascade']:.2f} mm rms (target: at most 1.50), "
+        f"{ratio:.1f} x better than PID (target: at least 3.0)"
+    )
+
+
+def published() -> None:
+    """The protocols of two papers on a cylinder of the size they used."""
+    short = load_model(cases.HERE / "short_cylinder.yaml")
+    rows = []
+    for amplitude, frequency in ((0.07, 0.5), (0.06, 0.5), (0.06, 1.0)):
+        law = cases.own("cascade", "short_cylinder_cascade.yaml", short)
+        rows.append(tracking(follow(short, law, sine(amplitude, frequency), 22.0)[0], 2.0))
+    law = cases.own("cascade", "short_cylinder_cascade.yaml", short)
+    record = follow(short, law, steps([k * cases.STEP for k in (0, 1, 0, 1, 0)], 3.0), 15.0)[0]
+    ends = arrivals(record, 3.0, 1e-3)
+    print("\nThe cascade in simulation on a cylinder of the size of published experiments (short_cylinder.yaml)")
+    print(f"{'protocol':40} {'published':>22} {'here':>22}")
+    print(f"{'Bone and Ning 2007: 70 mm, 0.5 Hz':40} {'rms < 0.4 mm':>22} {f'rms {1e3 * rows[0].rms:.3f} mm':>22}")
+    for row, text, theirs in ((rows[1], "60 mm, 0.5 Hz", "0.7"), (rows[2], "60 mm, 1 Hz", "1.2")):
+        ours = f"rms {1e3 * row.rms:.2f}, peak {1e3 * row.peak:.2f} mm"
+        print(f"{'Zhu and Barth 2010: ' + text:40} {f'within {theirs} mm':>22} {ours:>22}")
+    worst = max(end.error for end in ends)
+    print(f"{'Zhu and Barth 2010: steps of 60 mm':40} {'steady < 0.05 mm':>22} {f'steady {1e3 * worst:.3f} mm':>22}")
+
+
+def discovery() -> None:
+    """Before and after an effect was found."""
+    from control_discovery import show
+
+    show()
+
+
+def step_time() -> None:
+    """Time of one step of each law, of steps along the sine."""
+    print(f"\n{'one control step':16} {'median':>10} {'99 %':>10}   (target: under 20 us)")
+    for law in LAWS:
+        _, shown = follow(AXIS, shipped(law), SINE, 10.0)
+        taken = _replayed(law, shown)
+        print(f"{law:16} {np.median(taken):7.1f} us {np.percentile(taken, 99):7.1f} us")
+
+
+def _replayed(name: str, shown: np.ndarray) -> np.ndarray:
+    """Times [us] of the steps that answer the same measurements again, without the plant in between."""
+    law, taken = shipped(name), np.empty(len(shown))
+    for k, (t, y, a, b) in enumerate(shown.tolist()):
+        wanted, seen = SINE(t), Measurement(t, y, None, a, b)
+        begin = time.perf_counter_ns()
+        law.step(wanted, seen)
+        taken[k] = 1e-3 * (time.perf_counter_ns() - begin)
+    return taken
+
+
+if __name__ == "__main__":
+    main()
