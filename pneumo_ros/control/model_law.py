@@ -10,6 +10,7 @@ from pneumo_ros.control.law import Law
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.pneumatics import Chambers, chambers
 from pneumo_ros.control.setpoint import Setpoint
+from pneumo_ros.control.spool import SpoolLead
 
 REOPEN = 1.5  # times the tolerance
 REST = 0.02  # s without motion after which the piston counts as resting
@@ -43,7 +44,7 @@ class ModelLaw(Law):
     def forget(self) -> None:
         """Forget the estimates."""
         self.estimator, self.friction = StateEstimator(self.bandwidth), FrictionObserver(self.machine)
-        self.resting, self.still = False, 0.0
+        self.resting, self.still, self._spool = False, 0.0, SpoolLead()
         self._anchor, self._goal, self._stops = 0.0, 0.0, 0
 
     def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
@@ -56,8 +57,8 @@ class ModelLaw(Law):
         self.resting = self._may_rest(setpoint, state)
         if self.resting:
             self.pause(state)
-            return 0.0
-        return self.valve.voltage(self.valve.clip(self.opening(setpoint, state, dt)))
+        wanted = 0.0 if self.resting else self.valve.voltage(self.valve.clip(self.opening(setpoint, state, dt)))
+        return self._spool.voltage(self.machine, wanted, self.valve.max_voltage, dt)
 
     @abstractmethod
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
