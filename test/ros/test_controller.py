@@ -169,7 +169,7 @@ def test_it_takes_its_dead_zone_from_a_machine_file_and_refuses_what_it_does_not
         assert process.end() == 0
     with running(*node("controller", **{"pid.proportionl": 3.0}), cwd=tmp_path) as process:
         assert process.end(None) == 2
-        assert "did you mean pid.proportional?" in process.said
+        assert "did you mean pid.proportional" in process.said
 
 
 SPY = """
