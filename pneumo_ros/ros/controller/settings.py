@@ -9,6 +9,8 @@ from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.controller import guiding
+from pneumo_ros.ros.controller.guiding import limits_of
 from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
@@ -58,7 +60,7 @@ _GAINS = tuple(
     for law, kind in LAWS.items()
     for name, gain in kind.gains.items()
 )
-SETTINGS = (*_OWN, *_REFERENCE, *_VALVE, *_MACHINE, *_GAINS)
+SETTINGS = (*_OWN, *_REFERENCE, *guiding.SETTINGS, *_VALVE, *_MACHINE, *_GAINS)
 
 
 def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
@@ -72,16 +74,29 @@ def valve_of(values: Mapping[str, Any]) -> ValveInverse:
     return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
 
 
-def reference_of(values: Mapping[str, Any]) -> Reference | None:
-    """The reference that the parameters describe, None if it comes from the topic; UsageError for bad values."""
-    shape = values["reference.shape"]
+def reference_of(values: Mapping[str, Any]) -> tuple[Reference, bool] | None:
+    """The reference that the parameters describe, and whether it jumps; None if it comes from topics.
+
+    UsageError for bad values, such as positions outside the limits and the stroke.
+    """
+    shape, offset = values["reference.shape"], values["reference.offset"]
     if shape == "constant":
-        return constant(values["reference.position"])
+        _require_within(values, values["reference.position"])
+        return constant(values["reference.position"]), True
     if shape == "steps":
-        return steps(list(values["reference.levels"]), values["reference.hold"])
+        _require_within(values, *values["reference.levels"])
+        return steps(list(values["reference.levels"]), values["reference.hold"]), True
     if shape == "sine":
-        return sine(values["reference.amplitude"], values["reference.frequency"], values["reference.offset"])
+        amplitude = values["reference.amplitude"]
+        _require_within(values, offset + amplitude, offset - amplitude)
+        return sine(amplitude, values["reference.frequency"], offset), False
     return None
+
+
+def _require_within(values: Mapping[str, Any], *positions: float) -> None:
+    limits = limits_of(values).on_stroke(machine_of(values).stroke)
+    for position in positions:
+        limits.require(position)
 
 
 def machine_of(values: Mapping[str, Any]) -> Machine:
