@@ -55,7 +55,7 @@ def plants() -> None:
 
 
 def published() -> None:
-    """The protocols of two papers on a cylinder of the size they used, and on one that differs from its machine file."""
+    """The protocols of two papers on a cylinder of the size they used, and on one unlike its machine file."""
     short = load_model(cases.HERE / "short_cylinder.yaml")
     other = short.with_effects(
         [*short.effects, "valve_spool_dynamics"], {"valve_spool_dynamics.angular_frequency": 400}

@@ -2,7 +2,7 @@
 
 from pneumo_ros.control.approach import Approach, Wanted
 from pneumo_ros.control.gain import Gain
-from pneumo_ros.control.model_law import STUCK, AxisState, ModelLaw
+from pneumo_ros.control.model_law import AxisState, ModelLaw
 from pneumo_ros.control.setpoint import Setpoint
 
 
@@ -27,6 +27,6 @@ class ApproachingLaw(ModelLaw):
     def wanted(self, setpoint: Setpoint, state: AxisState) -> Wanted:
         """Wanted velocity and acceleration; call once per measurement."""
         error = setpoint.position - state.position
-        self._approach.watch(setpoint, error, self.still > STUCK, self.patience, self.detour)
+        self._approach.watch(setpoint, error, self.stops.stuck, self.patience, self.detour)
         shape = self.position_rate, self.braking, self.slowest, self.stop
         return self._approach.wanted(setpoint, error, state.velocity, *shape)

@@ -19,9 +19,9 @@ class Cascade(ApproachingLaw):
         F'  = F_d' + K_P (F_d - F)                        pneumatic loop, solved for the opening (see `pneumatics`)
 
     The friction observer's bristles are bent by kappa s besides: at rest, where no velocity is seen, this is what
-    brings the force to breakaway. Departures: scale of friction and load are learnt while the piston slides; F_d' is taken
-    where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there for the
-    proof of stability, is left out, being less than 1 N/s here.
+    brings the force to breakaway. Departures: scale of friction and load are learnt while the piston slides; F_d' is
+    taken where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there
+    for the proof of stability, is left out, being less than 1 N/s here.
     """
 
     tuned = ("damping", "force_rate", "position_rate", "correction", "braking", "bandwidth")
