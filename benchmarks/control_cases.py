@@ -41,7 +41,7 @@ def shipped(law: str, known: Model = AXIS) -> Law:
     return load_control(law).make(known.effects, known.parameters)
 
 
-def own(law: str, file: str, known: Model) -> Law:
+def own(file: str, known: Model) -> Law:
     """The law with the gains of a control file beside this one."""
     return load_control(HERE / file).make(known.effects, known.parameters)
 

@@ -18,6 +18,7 @@ AMPLITUDE, STEP = 0.15, 0.03  # of the stroke: 0.3 m and 60 mm of the default ma
 SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of what the machine does at full voltage
 MOVE_FORCE = 0.3  # greatest force that accelerates, of what the supply makes in the smaller chamber
 HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass of the other machine that the gains must suit
+SPOOL = "valve_spool_dynamics"
 HOLD = 4.0  # s after each move
 RUN_UP = 0.2  # of a period of the sine, not judged
 JUDGED = 8.0  # s of the sine at least, in whole periods
@@ -76,24 +77,28 @@ def stepper(model: "Model", position: float = 0.0) -> Stepper:
     return Stepper(model, begin_at(model, position), sample_time=SAMPLE_TIME)
 
 
-def harsher(model: "Model") -> "Model":
-    """The same machine with more friction and mass."""
+def harsher(model: "Model", spool: float | None = None) -> "Model":
+    """The same machine with more friction and mass, and a `spool` of that angular frequency [rad/s]."""
     factors = {
         "piston.mass": HEAVIER,
         "lugre_friction.static_friction": HARSHER,
         "lugre_friction.coulomb_friction": HARSHER,
     }
-    return model.with_parameters({n: f * model[n] for n, f in factors.items() if n in model.parameters})
+    other = model.with_parameters({n: f * model[n] for n, f in factors.items() if n in model.parameters})
+    if spool is None:
+        return other
+    effects = [name for name in model.effects if name != SPOOL]
+    return other.with_effects([*effects, SPOOL], {f"{SPOOL}.angular_frequency": spool})
 
 
-def trials_of(model: "Model", task: Task) -> list[Trial]:
+def trials_of(model: "Model", task: Task, spool: float | None = None) -> list[Trial]:
     """The sine and six moves, each on the machine and on the harsher one."""
     period, levels = 1.0 / task.frequency, [k * task.step for k in (-1, 0, -1, 0, 1, 0, -1)]
     whole = max(np.ceil(JUDGED / period), 1.0)
     wave, ways = sine(task.amplitude, task.frequency), moves(levels, HOLD + task.duration, task.duration)
     hold = HOLD + task.duration
     found = []
-    for machine in (model, harsher(model)):
+    for machine in (model, harsher(model, spool)):
         found.append(Trial(partial(stepper, machine), wave, (whole + RUN_UP) * period, RUN_UP * period))
         found.append(Trial(partial(stepper, machine, levels[0]), ways, len(levels) * hold, hold=hold, unit=TOLERANCE))
     return found

@@ -29,6 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--amplitude", type=float, metavar="M", help="of the sine to follow (default: 0.15 strokes)")
     parser.add_argument("--frequency", type=float, metavar="HZ", help="of it (default: 0.64 of the top speed)")
     parser.add_argument("--step", type=float, metavar="M", help="of the moves to make (default: 0.03 strokes)")
+    slow = "the gains must also suit a valve spool of this angular frequency, which the machine file need not know"
+    parser.add_argument("--spool", type=float, metavar="RAD/S", help=slow)
     runs = f"how often to try gains, of which each try is four runs (default: {EVALUATIONS})"
     parser.add_argument("--evaluations", type=int, default=EVALUATIONS, metavar="N", help=runs)
     add_model(parser)
@@ -47,14 +49,14 @@ def run(options: argparse.Namespace, console: Console) -> int:
     task = task_for(model, options.amplitude, options.frequency, options.step)
     search = _search(options, start, model, task, console)
     found = Control(start.law, {**start.gains, **search.gains}, start.smoothing)
-    write_whole(options.out, found.text(_heading(start.law, model, task)))
+    write_whole(options.out, found.text(_heading(start.law, model, task, options.spool)))
     _tell(options, start, model, search, console)
     return 0
 
 
 def _check(options: argparse.Namespace) -> None:
     check_writable(options.out)
-    for name in ("amplitude", "frequency", "step", "evaluations"):
+    for name in ("amplitude", "frequency", "step", "spool", "evaluations"):
         value = getattr(options, name)
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise UsageError(f"--{name} is {value:g}; it takes a number above 0")
@@ -86,17 +88,21 @@ def _search(options: argparse.Namespace, start: "Control", model: "Model", task:
     )
     with console.progress("Tuning") as progress:
         search = Search(
-            make, trials_of(model, task), options.evaluations, lambda count, _: progress(count / options.evaluations)
+            make,
+            trials_of(model, task, options.spool),
+            options.evaluations,
+            lambda count, _: progress(count / options.evaluations),
         )
         search.run()
     return search
 
 
-def _heading(law: str, model: "Model", task: "Task") -> str:
+def _heading(law: str, model: "Model", task: "Task", spool: float | None) -> str:
+    slow = f" and a spool of {spool:g} rad/s" if spool else ""
     return (
         f"Gains of {law} for the machine {model.name}, found by simulation: pneumo tune --law {law}\n"
         f"on a sine of {task.amplitude:g} m and {task.frequency:.3g} Hz and on moves of {1e3 * task.step:g} mm in "
-        f"{task.duration:.2g} s,\nwith the machine and with twice its mass and 20 % more friction."
+        f"{task.duration:.2g} s,\nwith the machine and with twice its mass, 20 % more friction{slow}."
     )
 
 

@@ -2,14 +2,15 @@
 
 import math
 
-from pneumo_ros.control.approach import Approach, Wanted
+from pneumo_ros.control.approach import Wanted
+from pneumo_ros.control.approaching_law import ApproachingLaw
 from pneumo_ros.control.gain import Gain
-from pneumo_ros.control.model_law import STUCK, AxisState, ModelLaw
+from pneumo_ros.control.model_law import AxisState
 from pneumo_ros.control.pneumatics import opening
 from pneumo_ros.control.setpoint import Setpoint
 
 
-class Cascade(ModelLaw):
+class Cascade(ApproachingLaw):
     """Cascade of Guenther, Perondi, De Pieri and Valdiero, Cascade Controlled Pneumatic Positioning System with LuGre
     Model Based Friction Compensation, J. of the Braz. Soc. of Mech. Sci. and Eng. 28 (2006), for areas that differ:
 
@@ -18,42 +19,22 @@ class Cascade(ModelLaw):
         F'  = F_d' + K_P (F_d - F)                        pneumatic loop, solved for the opening (see `pneumatics`)
 
     The friction observer's bristles are bent by kappa s besides: at rest, where no velocity is seen, this is what
-    brings the force to breakaway. Departures: the scale of friction is learnt while the piston slides; F_d' is taken
-    where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there for the
-    proof of stability, is left out, being a newton per second here.
+    brings the force to breakaway. Departures: scale of friction and load are learnt while the piston slides; F_d' is
+    taken where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there
+    for the proof of stability, is left out, being less than 1 N/s here.
     """
 
     tuned = ("damping", "force_rate", "position_rate", "correction", "braking", "bandwidth")
-    position_rate = Gain(30.0, "1/s", "lambda, wanted velocity per position error", 0.1, 500.0)
-    braking = Gain(0.15, "m/s2", "b, deceleration with which larger errors are approached", 1e-3, 100.0)
     damping = Gain(300.0, "N s/m", "K_D, force per velocity error", 0.0, 1e5)
     force_rate = Gain(60.0, "1/s", "K_P, rate at which an error of the force is removed", 0.0, 2000.0)
     correction = Gain(0.5, "1", "kappa, velocity error that bends the bristles of the friction observer", 0.0, 100.0)
-    learning = Gain(10.0, "1/s", "rate at which the scale of friction is learnt while sliding", 0.0, 1000.0)
-    slowest = Gain(0.02, "m/s", "least speed at which the end of a motion is approached", 0.0, 1.0)
-    stop = Gain(2.5e-4, "m", "way in which the piston stops from there", 0.0, 0.1)
-    detour = Gain(0.01, "m", "way past a place missed by less, before coming back to it; 0: none", 0.0, 1.0)
-
-    def forget(self) -> None:
-        """Forget estimates, approach and friction."""
-        super().forget()
-        self._approach = Approach()
+    learning = Gain(10.0, "1/s", "rate at which scale of friction and load are learnt while sliding", 0.0, 1000.0)
 
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
         """Opening [V] of the valve."""
-        wanted = self._wanted(setpoint, state)
+        wanted = self.wanted(setpoint, state)
         force, rate = self._force(setpoint, state, wanted, dt)
         return opening(self.machine, state.air, state.velocity, rate + self.force_rate * (force - state.air.force))
-
-    def pause(self, state: AxisState) -> None:
-        """Nothing builds up meanwhile."""
-        self._approach.reset()
-
-    def _wanted(self, setpoint: Setpoint, state: AxisState) -> Wanted:
-        error = setpoint.position - state.position
-        self._approach.watch(setpoint, error, self.still > STUCK, self.patience, self.detour)
-        shape = self.position_rate, self.braking, self.slowest, self.stop
-        return self._approach.wanted(setpoint, error, state.velocity, *shape)
 
     def _force(self, setpoint: Setpoint, state: AxisState, wanted: Wanted, dt: float) -> tuple[float, float]:
         """F_d [N] and the smooth part of its rate [N/s]."""

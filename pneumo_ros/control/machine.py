@@ -47,6 +47,8 @@ class Machine:
     viscous_friction: float = _known("viscous_friction.coefficient", 0.0)
     mass_added: float = _known("payload_mass.mass_added", 0.0)
     load: float = _known("constant_load.load", 0.0)
+    spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # there: a spool without lag
+    spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
     atmosphere_on_rod: bool = True
 
     @classmethod

@@ -10,12 +10,11 @@ from pneumo_ros.control.law import Law
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.pneumatics import Chambers, chambers
 from pneumo_ros.control.setpoint import Setpoint
+from pneumo_ros.control.spool import SpoolLead
+from pneumo_ros.control.stops import Stops
 
 REOPEN = 1.5  # times the tolerance
 REST = 0.02  # s without motion after which the piston counts as resting
-WIDEST = 4  # times that the tolerance may double
-STUCK = 0.05  # s without motion after which it will not go on by itself
-FREE_STOPS = 6  # stops at wrong places before the tolerance widens; a detour makes two
 
 
 class AxisState(NamedTuple):
@@ -43,8 +42,7 @@ class ModelLaw(Law):
     def forget(self) -> None:
         """Forget the estimates."""
         self.estimator, self.friction = StateEstimator(self.bandwidth), FrictionObserver(self.machine)
-        self.resting, self.still = False, 0.0
-        self._anchor, self._goal, self._stops = 0.0, 0.0, 0
+        self.resting, self.stops, self._spool = False, Stops(), SpoolLead()
 
     def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
         """Voltage [V]; see `Law.respond`."""
@@ -52,12 +50,12 @@ class ModelLaw(Law):
             return 0.0
         state = self._estimate(measurement, measurement.pressure_a, measurement.pressure_b, dt)
         self.friction.machine = self.machine
-        self._watch(setpoint, state.position, dt)
+        self.stops.watch(setpoint.position, state.position, self.rest_span, self.resting, dt)
         self.resting = self._may_rest(setpoint, state)
         if self.resting:
             self.pause(state)
-            return 0.0
-        return self.valve.voltage(self.valve.clip(self.opening(setpoint, state, dt)))
+        wanted = 0.0 if self.resting else self.valve.voltage(self.valve.clip(self.opening(setpoint, state, dt)))
+        return self._spool.voltage(self.machine, wanted, self.valve.max_voltage, dt)
 
     @abstractmethod
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
@@ -81,18 +79,9 @@ class ModelLaw(Law):
             return False
         if self.resting:
             return error <= REOPEN * self.patience
-        return error <= self.patience and self.still >= REST
+        return error <= self.patience and self.stops.still >= REST
 
     @property
     def patience(self) -> float:
         """The tolerance [m], as far as stops at wrong places have widened it."""
-        return float(self.tolerance * 2.0 ** min(max(self._stops - FREE_STOPS, 0), WIDEST))
-
-    def _watch(self, setpoint: Setpoint, position: float, dt: float) -> None:
-        """For how long [s] the piston has not moved by `rest_span`, and how often it stopped since the last goal."""
-        before, self.still = self.still, self.still + dt
-        self._stops += before < STUCK <= self.still and not self.resting
-        if abs(position - self._anchor) > self.rest_span:
-            self._anchor, self.still = position, 0.0
-        if setpoint.position != self._goal:
-            self._goal, self._stops = setpoint.position, 0
+        return self.tolerance * self.stops.patience

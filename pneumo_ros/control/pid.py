@@ -4,7 +4,10 @@ from pneumo_ros.control.gain import Gain
 from pneumo_ros.control.law import Law
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.setpoint import Setpoint
+from pneumo_ros.control.stops import Stops
 from pneumo_ros.control.velocity import VelocityEstimator
+
+SPAN = 1e-4  # m, motion that counts as none
 
 
 class Pid(Law):
@@ -13,7 +16,8 @@ class Pid(Law):
     e' is the velocity of the setpoint minus that of the piston, the latter estimated unless it is measured. Anti-windup
     is conditional integration: the integral rests while the opening is saturated and the error would drive it further
     (Astrom and Hagglund, PID Controllers, 1995, sec. 3.5). Near the reference and nearly at rest the valve is closed
-    until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever.
+    until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever. After some
+    stops at wrong places the tolerance widens, as with every law here.
     """
 
     tuned = ("proportional", "derivative", "integral", "tolerance")
@@ -28,12 +32,13 @@ class Pid(Law):
     def forget(self) -> None:
         """Forget the integral and the velocity estimate."""
         self._piston = VelocityEstimator(self.bandwidth)
-        self._integral, self._resting = 0.0, False
+        self._integral, self._resting, self._stops = 0.0, False, Stops()
 
     def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
         """Voltage [V]; see `Law.respond`."""
         velocity, wanted = self._velocity(measurement), setpoint.velocity
         error = setpoint.position - measurement.position
+        self._stops.watch(setpoint.position, measurement.position, SPAN, self._resting, dt)
         self._resting = self._may_rest(error, velocity, wanted)
         return 0.0 if self._resting else self._act(error, wanted - velocity, dt)
 
@@ -43,9 +48,10 @@ class Pid(Law):
         return estimate if measurement.velocity is None else measurement.velocity
 
     def _may_rest(self, error: float, velocity: float, wanted: float) -> bool:
+        tolerance = self.tolerance * self._stops.patience
         if self._resting:
-            return abs(error) <= 2.0 * self.tolerance
-        return abs(error) <= self.tolerance and max(abs(velocity), abs(wanted)) <= self.rest_speed
+            return abs(error) <= 2.0 * tolerance
+        return abs(error) <= tolerance and max(abs(velocity), abs(wanted)) <= self.rest_speed
 
     def _act(self, error: float, rate: float, dt: float) -> float:
         limit = self.integral_limit

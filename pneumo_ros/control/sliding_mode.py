@@ -1,13 +1,13 @@
 """Sliding mode control with a boundary layer."""
 
-from pneumo_ros.control.approach import Approach
+from pneumo_ros.control.approaching_law import ApproachingLaw
 from pneumo_ros.control.gain import Gain
-from pneumo_ros.control.model_law import STUCK, AxisState, ModelLaw
+from pneumo_ros.control.model_law import AxisState
 from pneumo_ros.control.pneumatics import opening
 from pneumo_ros.control.setpoint import Setpoint
 
 
-class SlidingMode(ModelLaw):
+class SlidingMode(ApproachingLaw):
     """Sliding mode control of the third-order axis, M v' = F - F_friction(v) - F_load with F' from the valve:
 
         S  = (a_r - a) + omega (v_r - v)                  v_r: wanted velocity, of setpoint and error (see `Approach`)
@@ -21,33 +21,16 @@ class SlidingMode(ModelLaw):
     """
 
     tuned = ("reach", "layer", "speed_rate", "position_rate", "braking", "bandwidth")
-    position_rate = Gain(20.0, "1/s", "lambda, wanted velocity per position error", 0.1, 500.0)
-    braking = Gain(0.15, "m/s2", "b, deceleration with which larger errors are approached", 1e-3, 100.0)
     speed_rate = Gain(40.0, "1/s", "omega, wanted acceleration per velocity error", 0.0, 1000.0)
     reach = Gain(80.0, "m/s3", "eta, jerk that drives S to zero", 0.0, 1e5)
     layer = Gain(2.0, "m/s2", "Phi, boundary layer of S", 1e-4, 1000.0)
-    slowest = Gain(0.02, "m/s", "least speed at which the end of a motion is approached", 0.0, 1.0)
-    stop = Gain(2.5e-4, "m", "way in which the piston stops from there", 0.0, 0.1)
-    detour = Gain(0.01, "m", "way past a place missed by less, before coming back to it; 0: none", 0.0, 1.0)
-
-    def forget(self) -> None:
-        """Forget estimates and approach."""
-        super().forget()
-        self._approach = Approach()
 
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
         """Opening [V] of the valve."""
-        error = setpoint.position - state.position
-        self._approach.watch(setpoint, error, self.still > STUCK, self.patience, self.detour)
-        shape = self.position_rate, self.braking, self.slowest, self.stop
-        wanted = self._approach.wanted(setpoint, error, state.velocity, *shape)
+        wanted = self.wanted(setpoint, state)
         lag = wanted.acceleration - state.acceleration
         surface = lag + self.speed_rate * (wanted.velocity - state.velocity)
         share = min(max(surface / self.layer, -1.0), 1.0)
         jerk = setpoint.jerk + (self.position_rate + self.speed_rate) * lag + self.reach * share
         rate = self.machine.moving_mass * jerk + self.friction.running_slope(state.velocity) * state.acceleration
         return opening(self.machine, state.air, state.velocity, rate)
-
-    def pause(self, state: AxisState) -> None:
-        """Nothing builds up meanwhile."""
-        self._approach.reset()

@@ -35,6 +35,7 @@ def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: 
         (["--law", "pidd"], 2, "did you mean pid"),
         (["--evaluations", "0"], 2, "--evaluations is 0"),
         (["--amplitude", "nan"], 2, "--amplitude is nan"),
+        (["--spool", "-1"], 2, "--spool is -1"),
         (["--control", "cascade", "--law", "pid"], 2, "leave one of them out"),
         (["--control", "no_such"], 3, "no_such cannot be read"),
         (["--model", "emps"], 2, "no valve"),
@@ -61,6 +62,8 @@ def test_the_task_is_within_what_the_machine_can_do() -> None:
 def test_the_other_machine_is_heavier_and_stickier_and_one_without_lugre_friction_is_fine() -> None:
     assert harsher(AXIS)["piston.mass"] == 10.0
     assert harsher(AXIS)["lugre_friction.static_friction"] == pytest.approx(120.0)
+    assert "valve_spool_dynamics" not in harsher(AXIS).effects
+    assert harsher(AXIS, 400.0)["valve_spool_dynamics.angular_frequency"] == 400.0
     bare = AXIS.with_effects(["dead_zone", "arctan_flow", "quadratic_drag", "end_stop"])
     assert len(trials_of(bare, task_for(bare))) == 4
 
