@@ -93,7 +93,7 @@ def test_vent_needs_a_supply_that_is_shut_off() -> None:
 
 def test_a_lost_supply_closes_the_valve_and_nothing_moves_when_it_is_back() -> None:
     run = moving()
-    run.guide.minimum_supply = 2e5
+    run.guide.supply.least = 2e5
     run.guide.supplied(7e5, run.loop.time)
     run.position -= 0.01
     assert run.go() != 0.0

@@ -20,7 +20,11 @@ def test_the_axis_is_a_simulator_and_a_controller_of_the_same_machine(tmp_path: 
     nodes = commands("axis.launch.py", tmp_path)
     assert set(nodes) == {"/simulator", "/controller"}
     for command in nodes.values():
-        assert command[command.index("--params-file") + 1] == str(ROOT / "config" / "axis.yaml")
+        assert str(ROOT / "config" / "axis.yaml") in command
+    assert str(ROOT / "config" / "control" / "pid.yaml") in nodes["/controller"]
+    mine = commands("axis.launch.py", tmp_path, control="mine.yaml")
+    assert "mine.yaml" in mine["/controller"]
+    assert "mine.yaml" not in mine["/simulator"]
 
 
 def test_the_axis_is_recorded_if_a_folder_is_named(tmp_path: Path) -> None:

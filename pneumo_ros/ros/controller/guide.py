@@ -7,10 +7,9 @@ from enum import Enum
 from pneumo_ros.control import Law, Reference, Setpoint
 from pneumo_ros.control.motion import Capability, Limits, Motion, Trajectory, Vent, Waypoint, ahead, require, slowed
 from pneumo_ros.errors import UsageError
+from pneumo_ros.ros.controller.supply import Supply
 
 NEAR = 0.01  # m; from nearer than that, a smooth reference is followed as it is
-DEAD = 1.3  # times the atmosphere's pressure: what a supply that is shut off has at most
-CHANGE = 0.02  # of the supply pressure, relative: less than that needs no new limits
 
 
 class Mode(Enum):
@@ -32,28 +31,17 @@ class Guide:
         """`law` tells what is known of machine and valve."""
         self.law, self.mode = law, Mode.FOLLOWING
         self.limits, self.motion = Limits(), Motion(Limits())
-        self.slow_down, self.minimum_supply, self.vent_unseen = False, 0.0, False
-        self.supply: float | None = None  # [Pa abs] as measured
+        self.slow_down = self.vent_unseen = False
+        self.supply = Supply()
         self.built_in: tuple[Reference, bool] | None = None  # a reference of its own, and whether it jumps
         self.position: float | None = None
         self._early: tuple[float, float | None] | None = None  # what was asked for before the first measurement
         self._vent: Vent | None = None
-        self._fitted_for: float | None = None
 
     @property
     def capability(self) -> Capability:
         """What the machine can do with the supply pressure as it is."""
-        return Capability(self.law.machine, self.law.valve, self.supply)
-
-    @property
-    def starved(self) -> bool:
-        """Whether the supply pressure is known to be lost."""
-        return self.supply is not None and self.supply < self.minimum_supply
-
-    @property
-    def _dead(self) -> float:
-        """Supply pressure [Pa abs] up to which the supply counts as shut off."""
-        return DEAD * self.law.machine.atmospheric_pressure
+        return Capability(self.law.machine, self.law.valve, self.supply.pressure)
 
     # --- every measurement ------------------------------------------------------------------------------------------
 
@@ -63,7 +51,7 @@ class Guide:
         if self._early is not None:
             early, self._early = self._early, None
             self.motion.aim(*early, time, position)
-        if self.built_in is not None and self.mode is Mode.FOLLOWING and not self.starved:
+        if self.built_in is not None and self.mode is Mode.FOLLOWING and not self.supply.lost:
             self._follow_built_in(time, position)
         return self.motion.at(time, position)
 
@@ -71,7 +59,7 @@ class Guide:
         """The voltage that takes the place of the law's answer; None: the law answers."""
         if self._vent is not None:
             return self._vent.voltage(time, pressures)
-        return 0.0 if self.mode is Mode.STOPPED or self.starved else None
+        return 0.0 if self.mode is Mode.STOPPED or self.supply.lost else None
 
     def restart(self, time: float, position: float) -> None:
         """Begin anew from where the piston is, after measurements stayed away or the clock was set."""
@@ -79,19 +67,16 @@ class Guide:
 
     def supplied(self, pressure: float, time: float) -> None:
         """Take the supply pressure [Pa abs]; once it is back, the piston stays where it is by then."""
-        if not math.isfinite(pressure):
-            raise UsageError(f"supply pressure {pressure!r} is no finite number")
-        before, self.supply = self.starved, pressure
-        if self._vent is not None and pressure > self._dead:
+        before, changed = self.supply.lost, self.supply.take(pressure)
+        if self._vent is not None and not self.supply.shut_off(self.law.machine.atmospheric_pressure):
             self.stop()  # or the valve that vents would drive the piston
-        if self.position is not None and before and not self.starved and self.motion.asked:
+        if self.position is not None and before and not self.supply.lost and self.motion.asked:
             self._settle(time, "the supply pressure was lost")
-        if self._fitted_for is None or abs(pressure - self._fitted_for) > CHANGE * self._fitted_for:
+        if changed:
             self.fit(time)
 
     def fit(self, time: float) -> None:
         """Make the limits fit what the machine can do; whenever either has changed."""
-        self._fitted_for = self.supply
         self.motion.change_limits(self.capability.fit(self.limits.on_stroke(self.law.machine.stroke)), time)
 
     # --- requests ---------------------------------------------------------------------------------------------------
@@ -146,16 +131,9 @@ class Guide:
 
     def vent(self, time: float) -> None:
         """Empty both chambers, which needs a supply that is shut off: else the piston would be driven."""
-        machine = self.law.machine
-        if self.supply is None and not self.vent_unseen:
-            raise UsageError(
-                "no supply/pressure tells that the supply is shut off; shut it, then set vent_unseen to true"
-            )
-        if self.supply is not None and self.supply > self._dead:
-            raise UsageError(
-                f"the supply pressure is {self.supply:.4g} Pa; shut it off first, to {self._dead:.4g} Pa or less"
-            )
-        self.mode, self._vent = Mode.VENTING, Vent(time, machine.atmospheric_pressure, self.law.valve.max_voltage)
+        atmosphere = self.law.machine.atmospheric_pressure
+        self.supply.require_shut_off(atmosphere, self.vent_unseen)
+        self.mode, self._vent = Mode.VENTING, Vent(time, atmosphere, self.law.valve.max_voltage)
 
     def resume(self, time: float) -> None:
         """Take references again, from where the piston is."""

@@ -31,6 +31,6 @@ def limits_of(values: Mapping[str, Any]) -> Limits:
 def set_guide(guide: Guide, values: Mapping[str, Any], time: float) -> None:
     """Give a guide its parameters, at time [s] of the loop."""
     guide.limits, guide.slow_down = limits_of(values), values["trajectory.slow_down"]
-    guide.minimum_supply, guide.vent_unseen = values["minimum_supply"], values["vent_unseen"]
+    guide.supply.least, guide.vent_unseen = values["minimum_supply"], values["vent_unseen"]
     guide.motion.following_error, guide.motion.pause = values["following_error"], values["reference_timeout"]
     guide.fit(time)

@@ -66,11 +66,11 @@ class Inputs:
 
     def _supply(self, message: FluidPressure) -> None:
         guide = self._node.loop.guide
-        before = guide.starved
+        before = guide.supply.lost
         self._try("supply pressure", lambda: guide.supplied(message.fluid_pressure, self._node.loop_now()))
-        if guide.starved and not before:
-            self._node.get_logger().error(f"supply pressure lost, {guide.supply:.4g} Pa: sending 0 V")
-        elif before and not guide.starved:
+        if guide.supply.lost and not before:
+            self._node.get_logger().error(f"supply pressure lost, {guide.supply.pressure:.4g} Pa: sending 0 V")
+        elif before and not guide.supply.lost:
             self._node.get_logger().info("supply pressure is back; the piston stays until it is sent somewhere")
 
     def _try(self, what: str, act: Callable[[], object]) -> None:

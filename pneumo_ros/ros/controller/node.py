@@ -1,6 +1,5 @@
 """The controller: one valve command per joint state; what is asked of it comes in by `inputs` and `services`."""
 
-import math
 import threading
 import time
 from collections.abc import Callable
@@ -11,14 +10,15 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.control import Law
-from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B, SETPOINT
+from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
-from pneumo_ros.ros.controller.guide import Mode
 from pneumo_ros.ros.controller.guiding import limits_of, set_guide
+from pneumo_ros.ros.controller.health import health_of
 from pneumo_ros.ros.controller.inputs import Inputs
 from pneumo_ros.ros.controller.loop import Loop
 from pneumo_ros.ros.controller.services import Services
+from pneumo_ros.ros.controller.setpoints import Setpoints
 from pneumo_ros.ros.controller.settings import (
     LAWS,
     SETTINGS,
@@ -35,7 +35,6 @@ from pneumo_ros.ros.parameters import Values
 from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
-TELL = 0.01  # s between two setpoints that are sent
 CHECK = 0.02  # s between looks for silence
 
 
@@ -66,11 +65,7 @@ class Controller(AxisNode):
         self._stale = self._finished = False
         self._sending = threading.Lock()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
-        self._wanted, self._wanted_message = (
-            self.create_publisher(JointState, SETPOINT, PUBLISH),
-            messages.joint_state(self._joint, effort=False),
-        )
-        self._told = -math.inf  # loop time of the last setpoint that was sent
+        self._setpoints = Setpoints(self, self._joint)
         self._listen()
         self.inputs, self._service_calls = Inputs(self, self._joint), Services(self)
         self._action = Following(self, FollowJointTrajectory) if FollowJointTrajectory else None
@@ -132,14 +127,7 @@ class Controller(AxisNode):
         if voltage is not None:
             self._heard, self._stamp, self._stale = now, sample.stamp, self._recovered()
             self.send(voltage)
-            self._tell_setpoint(self._stamp or self.get_clock().now().nanoseconds)
-
-    def _tell_setpoint(self, stamp: int) -> None:
-        """For plots; not with every measurement."""
-        wanted, now = self.loop.wanted, self.loop.time
-        if wanted is not None and now - self._told >= TELL:
-            self._told = now
-            self._wanted.publish(self._wanted_message.fill(stamp, wanted.position, wanted.velocity))
+            self._setpoints.tell(self.loop.wanted, self.loop.time, self.stamp_now())
 
     def _recovered(self) -> bool:
         if self._stale:
@@ -189,22 +177,6 @@ class Controller(AxisNode):
         self._publisher.wait_for_all_acked(Duration(seconds=0.2))
 
     def health(self) -> Health:
-        """Counts, errors and what is missing."""
-        loop, guide = self.loop, self.loop.guide
-        values: dict[str, object] = {"measurements": loop.measured, "rejected_inputs": loop.refused}
-        values |= {"saturated_commands": loop.saturated, "restarts": loop.restarts, "voltage_V": loop.voltage}
-        values |= {"mode": guide.mode.value, "motion": guide.motion.kind.value, "reason": guide.motion.reason}
-        values["refused"] = self.inputs.refused
-        if self._heard is not None:
-            values["measurement_age_s"] = (self._clock_ns() - self._heard) * 1e-9
-        if loop.wanted is not None and guide.position is not None:
-            values["position_error_m"] = loop.wanted.position - guide.position
-        return Health(values, self._warnings(), ["supply pressure lost: sending 0 V"] if guide.starved else [])
-
-    def _warnings(self) -> list[str]:
-        guide = self.loop.guide
-        missing = "no measurement yet" if self._heard is None else "measurements stay away: sending 0 V"
-        warnings = [missing] if self._heard is None or self._stale else []
-        if not guide.motion.asked:
-            warnings.append("no reference yet: holding 0 V")
-        return [*warnings, guide.mode.value] if guide.mode is not Mode.FOLLOWING else warnings
+        """See `health_of`."""
+        age = None if self._heard is None else (self._clock_ns() - self._heard) * 1e-9
+        return health_of(self.loop, self.inputs.refused, age, self._stale)
