@@ -52,14 +52,16 @@ def plants() -> None:
 
 def _targets(pid: float, cascade: float) -> None:
     """The nominal figures beside what they should be."""
-    alone = tracking(follow(AXIS, cases.own("pid_for_sine.yaml", AXIS), SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN)
+    laws = [cases.own(f"{law}_for_sine.yaml", AXIS) for law in ("pid", "cascade")]
+    alone = [tracking(follow(AXIS, law, SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN).rms for law in laws]
     raw = arrivals(follow(AXIS, shipped("cascade"), steps(cases.LEVELS, HOLD), 5 * HOLD)[0], HOLD, STEADY)
     print(
         f"cascade, nominal: {1e3 * cascade:.2f} mm rms (target: at most 1.50), "
         f"{pid / cascade:.1f} x better than PID (target: at least 3.0)"
     )
     print(
-        f"PID with gains for this sine alone: {1e3 * alone.rms:.2f} mm rms, {alone.rms / cascade:.1f} x the cascade's"
+        f"with gains for this sine alone: PID {1e3 * alone[0]:.2f} mm, cascade {1e3 * alone[1]:.2f} mm rms, "
+        f"{alone[0] / alone[1]:.1f} x better"
     )
     print(
         f"cascade, steps of 60 mm without a profile: steady {1e3 * max(e.error for e in raw):.2f} mm (target: at most "
