@@ -16,7 +16,8 @@ AXIS = load_model("axis")
 HERE = Path(__file__).parent
 SINE, SINE_SECONDS, SINE_BEGIN = sine(0.3, 0.05), 45.0, 5.0
 HOLD, STEP, STEADY = 20.0, 0.06, 3e-4  # s, m, m
-STEPS = moves([0.0, STEP, 0.0, -STEP, 0.0], HOLD, 1.0)
+LEVELS = (0.0, STEP, 0.0, -STEP, 0.0)
+STEPS = moves(LEVELS, HOLD, 1.0)
 
 
 def with_effect(effect: str, **values: float) -> Model:

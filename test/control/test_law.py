@@ -90,6 +90,7 @@ WORST = [
     {"stribeck_velocity": 1e-5, "bristle_stiffness": 5e7, "static_friction": 0.0, "coulomb_friction": 1e-3},
     {"filling_coefficient": 0.0, "exhaust_coefficient": 0.0, "voltage_gain": 0.01},
     {"choked_share": 1.0, "critical_ratio": 0.9, "leakage": 1e-6, "supply_pressure": 1e4, "mass_added": 1e4},
+    {"spool_frequency": 5.0, "spool_damping": 5.0},
 ]
 
 
