@@ -69,6 +69,7 @@ def test_publishers_of_either_reliability_are_heard(stack: Stack, left: AxisProb
 
 
 def test_short_arrays_and_numbers_that_are_none_are_refused(stack: Stack, left: AxisProbe) -> None:
+    left.comes_to_rest()  # on its way to what the test before has asked for
     before, begin = stack.refused(), left.position
     left.command_joints(["boom", "piston", "gripper"], [0.2, 0.3])  # whose positions are these?
     stack.process.wait_for("fewer positions than names")
@@ -76,7 +77,7 @@ def test_short_arrays_and_numbers_that_are_none_are_refused(stack: Stack, left: 
     left.command_joints(["piston"], [2.0])
     left.aim(math.inf)
     left.wait(lambda: stack.refused() >= before + 4, "four refusals")
-    assert abs(left.position - begin) < 1e-3
+    assert abs(left.position - begin) < 3e-3
 
 
 def test_a_stream_with_velocities_is_followed_as_it_moves(left: AxisProbe) -> None:
