@@ -22,8 +22,10 @@ ROS_WHEELS = [
 ]
 REPORT = ["plotly>=5"]  # the pages that --report writes
 FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
-TEST = ["pytest>=7.4", "playwright"]
+TEST = ["pytest>=7.4", "playwright", "xacro>=2.0"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
+
+CONFIG_FILES = ("yaml", "rviz", "xml", "json")  # machines and controllers; layouts of rviz, PlotJuggler and Foxglove
 
 
 def files(folder: str, pattern: str) -> list[str]:
@@ -57,8 +59,9 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        *shared(f"{NAME}/config", "**/*.yaml", "config"),
+        *(row for kind in CONFIG_FILES for row in shared(f"{NAME}/config", f"**/*.{kind}", "config")),
         *shared("launch", "**/*.launch.py", "launch"),
+        *shared("urdf", "**/*.xacro", "urdf"),
     ],
     zip_safe=False,
     python_requires=">=3.10",

@@ -1,10 +1,12 @@
-"""The nodes against the clock: real-time factor, late ticks and processor time at 1 kHz; lockstep against real time.
+"""The nodes against the clock: real-time factor, late ticks, processor time and answers at 1 kHz; lockstep.
 
 Every row is a run of real processes in a ROS domain of their own (but for the last, which has no ROS in it). Processor
 time is that of the whole process, all threads, as a share of one core. A tick is late when it begins more than 1 ms
-after its deadline. Lockstep runs the default machine under PID control along a sine.
+after its deadline. An answer takes from a joint state, as it is sent, to its valve command, as it arrives: both ways
+through the middleware and the control step between, so more than a command needs to reach the plant. Lockstep runs the
+default machine under PID control along a sine.
 
-    python benchmarks/bench_nodes.py [--seconds 60] [--lockstep-seconds 10] [--rate 1000]
+    python benchmarks/bench_nodes.py [--seconds 60] [--answer-seconds 20] [--lockstep-seconds 10] [--rate 1000]
 """
 
 import argparse
@@ -15,6 +17,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
+
+import numpy as np
+from answering import Asking
 
 from pneumo_ros.control import Measurement, Pid, closed_loop
 from pneumo_ros.control.reference import sine
@@ -108,6 +113,30 @@ def real_time(listener: Listener, seconds: float, rate: float) -> None:
         print(f"{title:34} {factor:17.5f} {late:11.3%}{columns}", flush=True)
 
 
+def answers(seconds: float, rate: float) -> None:
+    """Print how long valve commands take, law by law, and what the controller needs for it."""
+    from pneumo_ros.ros.controller.settings import LAWS
+
+    asking = Asking(rate)
+    print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")
+    print(f"{'':34} {'p50':>9} {'p99':>9} {'largest':>9} {'unanswered':>11} {'rate':>8} {'controller':>11}")
+    for law in LAWS:
+        patient = ("-p", "measurement_timeout:=10.0")  # 0 V into a silence would be taken for an answer
+        with nodes(("controller", *REFERENCE, *patient, "-p", f"law:={law}")) as pids:
+            while not asking.ready():
+                time.sleep(0.1)
+            asking.ask(2.0)
+            before, begin = cpu_seconds(pids[0]), time.monotonic()
+            waits, lost, reached = asking.ask(seconds)
+            share = (cpu_seconds(pids[0]) - before) / (time.monotonic() - begin)
+        p50, p99 = 1e3 * np.percentile(waits, (50, 99))
+        columns = f"{p50:6.2f} ms {p99:6.2f} ms {1e3 * waits.max():6.2f} ms {lost:11} {reached:5.0f} Hz {share:11.1%}"
+        print(f"{law:34} {columns}", flush=True)
+        while asking.ready():  # the next one must not be taken for this one
+            time.sleep(0.1)
+    asking.close()
+
+
 def lockstep(listener: Listener, seconds: float, rate: float) -> None:
     """Print the rows of lockstep runs."""
     paced = (*LOCKSTEP, "-p", f"publish_rate:={rate}")
@@ -141,16 +170,18 @@ def without_ros(rate: float, samples: int = 50_000) -> float:
 
 
 def main() -> None:
-    """Print both tables."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=60.0, help="length of each real-time run")
     parser.add_argument("--lockstep-seconds", type=float, default=10.0, help="wall time of each lockstep run")
+    parser.add_argument("--answer-seconds", type=float, default=20.0, help="length of each run of answers")
     parser.add_argument("--rate", type=float, default=1000.0, help="publish rate [Hz] of the real-time runs")
     given = parser.parse_args()
     domain = Domain()
     os.environ.update(domain.environment)
     listener = Listener()
     real_time(listener, given.seconds, given.rate)
+    answers(given.answer_seconds, given.rate)
     for rate in (500.0, 1000.0):
         lockstep(listener, given.lockstep_seconds, rate)
     load = os.getloadavg()

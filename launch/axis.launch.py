@@ -1,6 +1,7 @@
 """The pneumatic axis under position control: simulator and controller, in one namespace, recorded if wanted.
 
 ros2 launch pneumo_ros axis.launch.py namespace:=cylinder_1 record:=run_1
+ros2 launch pneumo_ros axis.launch.py control:=my_cascade.yaml params:=my_axis.yaml
 """
 
 from launch import LaunchDescription
@@ -12,10 +13,12 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 DEFAULT_MACHINE = PathJoinSubstitution([FindPackageShare("pneumo_ros"), "config", "axis.yaml"])
+DEFAULT_CONTROL = PathJoinSubstitution([FindPackageShare("pneumo_ros"), "config", "control", "pid.yaml"])
 
 ARGUMENTS = [
     DeclareLaunchArgument("namespace", default_value="", description="namespace of this cylinder; empty for none"),
     DeclareLaunchArgument("params", default_value=DEFAULT_MACHINE, description="machine file, also read by pneumo"),
+    DeclareLaunchArgument("control", default_value=DEFAULT_CONTROL, description="control file: law and gains"),
     DeclareLaunchArgument("record", default_value="", description="folder to record into; empty records nothing"),
 ]
 
@@ -29,7 +32,11 @@ def generate_launch_description() -> LaunchDescription:
         package="pneumo_ros", executable="simulator", namespace=namespace, parameters=machine, output="screen"
     )
     controller = Node(
-        package="pneumo_ros", executable="controller", namespace=namespace, parameters=machine, output="screen"
+        package="pneumo_ros",
+        executable="controller",
+        namespace=namespace,
+        parameters=[LaunchConfiguration("control"), *machine],
+        output="screen",
     )
     recorder = Node(
         package="pneumo_ros",

@@ -66,6 +66,14 @@ def whole_folder(path: str | Path) -> Iterator[Path]:
         shutil.rmtree(around, ignore_errors=True)
 
 
+def yaml_number(value: float) -> str:
+    """Shortest text that both YAML 1.1 and ROS read back as the same double."""
+    mantissa, e, exponent = repr(float(value)).partition("e")
+    if "." not in mantissa:
+        mantissa += ".0"
+    return mantissa + (f"e{int(exponent):+03d}" if e else "")
+
+
 def _usual_mode() -> int:
     """The permissions a newly made file gets; temporary files are made readable by their owner alone."""
     mask = os.umask(0)

@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TEXT = (".py", ".md", ".rst", ".toml", ".cfg", ".xml", ".yaml", ".yml", ".txt", ".sh", ".c", "")
 # Paths of one machine, and a home folder other than the reader's
-MACHINE_PATHS = re.compile(r"(?<![\w.$})])/(work|tmp|root|home/\w+|opt/pypi)\b")
+MACHINE_PATHS = re.compile(r"(?<![\w.$})<])/(work|tmp|root|home/\w+|opt/pypi)\b")
 PRIVATE = re.compile(r"\b(issue #?\d+|pypi[-.]\w+/simple)\b", re.IGNORECASE)
 
 

@@ -22,6 +22,7 @@ VERBS = (
     "add",
     "effects",
     "experiment",
+    "tune",
 )  # in the order help lists them; each is a module beside this one
 
 EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong usage, 3 unreadable or unfit data,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.control.law import Law
 from pneumo_ros.control.measurement import Measurement
-from pneumo_ros.control.reference import Reference
+from pneumo_ros.control.setpoint import Reference
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ Sensor = Callable[[float, Array], Measurement]  # time [s], state (states,) -> w
 
 @dataclass(frozen=True)
 class Record:
-    """A run, row k at time[k] [s]: reference [m], state (samples, states), and the voltage [V] held from then on."""
+    """A run, row k at time[k] [s]: wanted position [m], state (samples, states), voltage [V] held from then on."""
 
     time: Array
     reference: Array
@@ -56,7 +56,8 @@ def closed_loop(
     for k in range(samples):
         time = float(times[k])
         states[k] = plant.state
-        wanted[k] = reference(time)
-        voltage[k] = law.step(float(wanted[k]), sensor(time, plant.state))
+        setpoint = reference(time)
+        wanted[k] = setpoint.position
+        voltage[k] = law.step(setpoint, sensor(time, plant.state))
         plant.advance(float(voltage[k]))
     return Record(times, wanted, states, voltage)

@@ -6,7 +6,9 @@ from types import MappingProxyType
 from typing import ClassVar
 
 from pneumo_ros.control.gain import Gain
+from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.control.valve import ValveInverse
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
@@ -15,18 +17,28 @@ from pneumo_ros.nearest import unknown_name
 class Law(ABC):
     """A control law. Subclasses declare their gains as class attributes and read them as `self.<gain>`.
 
-    `valve` turns the wanted opening of the valve into its voltage; both it and the gains may change between steps.
+    `valve` turns the wanted opening of the valve into its voltage, `machine` is what is known of the plant; both may be
+    set, and gains tuned, between steps.
     """
 
     gains: ClassVar[Mapping[str, Gain]] = {}
     reads_pressures: ClassVar[bool] = False  # whether `step` uses the pressures of a measurement
+    tuned: ClassVar[tuple[str, ...]] = ()  # gains that are found by simulation, the ones that matter most first
 
     def __init_subclass__(cls) -> None:
-        cls.gains = MappingProxyType({name: value for name, value in vars(cls).items() if isinstance(value, Gain)})
+        own = {name: value for name, value in vars(cls).items() if isinstance(value, Gain)}
+        cls.gains = MappingProxyType({**own, **{n: g for n, g in cls.gains.items() if n not in own}})
 
-    def __init__(self, gains: Mapping[str, float] | None = None, valve: ValveInverse | None = None) -> None:
+    def __init__(
+        self,
+        gains: Mapping[str, float] | None = None,
+        valve: ValveInverse | None = None,
+        machine: Machine | None = None,
+    ) -> None:
         """Take `gains` by name, defaults for the others; raises UsageError as `tune` does."""
-        self.valve = valve or ValveInverse()
+        self.valve, self.machine = valve or ValveInverse(), machine or Machine()
+        self._time: float | None = None
+        self._answer = 0.0
         self.tune({name: gain.default for name, gain in self.gains.items()} | dict(gains or {}))
         self.reset()
 
@@ -40,13 +52,25 @@ class Law(ABC):
         for name, value in checked.items():
             setattr(self, name, value)
 
-    @abstractmethod
-    def step(self, reference: float, measurement: Measurement) -> float:
-        """Voltage [V] that drives the position to `reference` [m]; call once per measurement, in order of time.
+    def step(self, setpoint: Setpoint, measurement: Measurement) -> float:
+        """Voltage [V] that makes the piston follow `setpoint`; call once per measurement, in order of time.
 
         A measurement no later than the one before is a repetition and gets the same answer.
         """
+        dt = 0.0 if self._time is None else measurement.time - self._time
+        if self._time is None or dt > 0.0:
+            self._time, self._answer = measurement.time, self.respond(setpoint, measurement, dt)
+        return self._answer
 
-    @abstractmethod
     def reset(self) -> None:
         """Forget everything but the gains."""
+        self._time, self._answer = None, 0.0
+        self.forget()
+
+    @abstractmethod
+    def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
+        """Voltage [V] for a measurement `dt` [s] after the last one, 0 s for the first."""
+
+    @abstractmethod
+    def forget(self) -> None:
+        """Forget what the law itself keeps."""

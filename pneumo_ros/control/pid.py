@@ -3,64 +3,55 @@
 from pneumo_ros.control.gain import Gain
 from pneumo_ros.control.law import Law
 from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.setpoint import Setpoint
+from pneumo_ros.control.stops import Stops
 from pneumo_ros.control.velocity import VelocityEstimator
 
-REFERENCE_BANDWIDTH = 50.0  # rad/s; references of 50 Hz and more are followed smoothly
+SPAN = 1e-4  # m, motion that counts as none
 
 
 class Pid(Law):
     """opening = K_p e + integral of K_i e + K_d e', through the inverse of the dead zone, within the voltage limits.
 
-    e' is the velocity of the reference minus that of the piston, the latter estimated unless it is measured. A step of
-    the reference gives no kick: what would be a velocity above `speed_limit` counts as none. Anti-windup is
-    conditional integration: the integral rests while the opening is saturated and the error would drive it further
+    e' is the velocity of the setpoint minus that of the piston, the latter estimated unless it is measured. Anti-windup
+    is conditional integration: the integral rests while the opening is saturated and the error would drive it further
     (Astrom and Hagglund, PID Controllers, 1995, sec. 3.5). Near the reference and nearly at rest the valve is closed
-    until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever.
+    until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever. After some
+    stops at wrong places the tolerance widens, as with every law here.
     """
 
+    tuned = ("proportional", "derivative", "integral", "tolerance")
     proportional = Gain(100.0, "V/m", "K_p, opening per position error", 0.0, 10000.0)
-    integral = Gain(0.35, "V/(m s)", "K_i, opening per integrated position error", 0.0, 10000.0)
+    integral = Gain(0.6, "V/(m s)", "K_i, opening per integrated position error", 0.0, 10000.0)
     derivative = Gain(50.0, "V s/m", "K_d, opening per velocity error", 0.0, 1000.0)
     integral_limit = Gain(0.3, "V", "largest share of the integral in the opening", 0.0, 10.0)
     tolerance = Gain(1e-3, "m", "error that is left alone at rest", 0.0, 0.1)
     rest_speed = Gain(0.01, "m/s", "speed below which the piston counts as resting", 0.0, 1.0)
     bandwidth = Gain(200.0, "rad/s", "of the velocity estimate", 1.0, 5000.0)
-    speed_limit = Gain(0.3, "m/s", "largest speed of the reference that is followed as such", 0.0, 10.0)
 
-    def reset(self) -> None:
-        """Forget the integral, the velocity estimates and the last answer."""
+    def forget(self) -> None:
+        """Forget the integral and the velocity estimate."""
         self._piston = VelocityEstimator(self.bandwidth)
-        self._wanted = VelocityEstimator(self.bandwidth)
-        self._integral, self._resting = 0.0, False
-        self._time: float | None = None
-        self._answer = 0.0
+        self._integral, self._resting, self._stops = 0.0, False, Stops()
 
-    def step(self, reference: float, measurement: Measurement) -> float:
-        """Voltage [V]; see `Law.step`."""
-        dt = 0.0 if self._time is None else measurement.time - self._time
-        if self._time is not None and dt <= 0.0:
-            return self._answer
-        self._time = measurement.time
-        velocity, wanted = self._velocity(measurement), self._reference_velocity(measurement.time, reference)
-        error = reference - measurement.position
+    def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
+        """Voltage [V]; see `Law.respond`."""
+        velocity, wanted = self._velocity(measurement), setpoint.velocity
+        error = setpoint.position - measurement.position
+        self._stops.watch(setpoint.position, measurement.position, SPAN, self._resting, dt)
         self._resting = self._may_rest(error, velocity, wanted)
-        self._answer = 0.0 if self._resting else self._act(error, wanted - velocity, dt)
-        return self._answer
+        return 0.0 if self._resting else self._act(error, wanted - velocity, dt)
 
     def _velocity(self, measurement: Measurement) -> float:
         self._piston.bandwidth = self.bandwidth
         estimate = self._piston.update(measurement.time, measurement.position)
         return estimate if measurement.velocity is None else measurement.velocity
 
-    def _reference_velocity(self, time: float, reference: float) -> float:
-        self._wanted.bandwidth = REFERENCE_BANDWIDTH
-        velocity = self._wanted.update(time, reference)
-        return velocity if abs(velocity) <= self.speed_limit else 0.0
-
     def _may_rest(self, error: float, velocity: float, wanted: float) -> bool:
+        tolerance = self.tolerance * self._stops.patience
         if self._resting:
-            return abs(error) <= 2.0 * self.tolerance
-        return abs(error) <= self.tolerance and max(abs(velocity), abs(wanted)) <= self.rest_speed
+            return abs(error) <= 2.0 * tolerance
+        return abs(error) <= tolerance and max(abs(velocity), abs(wanted)) <= self.rest_speed
 
     def _act(self, error: float, rate: float, dt: float) -> float:
         limit = self.integral_limit

@@ -1,17 +1,17 @@
-"""Wanted positions as functions of time."""
+"""Wanted motions as functions of time."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
+from pneumo_ros.control.setpoint import Reference, Setpoint
 from pneumo_ros.errors import UsageError
-
-Reference = Callable[[float], float]  # time [s] -> position [m]
 
 
 def constant(position: float) -> Reference:
     """Always `position` [m]; UsageError unless it is finite."""
     _finite(position=position)
-    return lambda time: position
+    held = Setpoint(float(position))
+    return lambda time: held
 
 
 def steps(levels: Sequence[float], hold: float) -> Reference:
@@ -23,15 +23,51 @@ def steps(levels: Sequence[float], hold: float) -> Reference:
     for level in levels:
         _finite(levels=level)
     _positive(hold=hold)
-    held = tuple(float(level) for level in levels)
+    held = tuple(Setpoint(float(level)) for level in levels)
     return lambda time: held[int(math.floor(time / hold + 1e-9)) % len(held)]
+
+
+def moves(levels: Sequence[float], hold: float, duration: float) -> Reference:
+    """Like `steps`, but from one level to the next within `duration` [s] along x = 10 t^3 - 15 t^4 + 6 t^5.
+
+    Of all ways that begin and end at rest this has the least jerk (T. Flash and N. Hogan, The Coordination of Arm
+    Movements, J. Neuroscience 5, 1985). It starts at the first level. Raises UsageError as `steps`, and for a duration
+    that is not positive or longer than `hold`.
+    """
+    held = steps(levels, hold)
+    _positive(duration=duration)
+    if duration > hold:
+        raise UsageError(f"duration is {duration:g} s, longer than the hold of {hold:g} s")
+
+    def motion(time: float) -> Setpoint:
+        begin = math.floor(time / hold + 1e-9) * hold
+        at, way = held(time), held(time).position - held(max(begin - 0.5 * hold, 0.0)).position
+        x = (time - begin) / duration
+        return at if x >= 1.0 or way == 0.0 else _least_jerk(at.position - way, way, max(x, 0.0), duration)
+
+    return motion
+
+
+def _least_jerk(begin: float, way: float, x: float, duration: float) -> Setpoint:
+    speed, rate, jerk = way / duration, way / duration**2, way / duration**3
+    return Setpoint(
+        begin + way * x**3 * (10.0 - 15.0 * x + 6.0 * x * x),
+        speed * 30.0 * (x * (1.0 - x)) ** 2,
+        rate * 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x),
+        jerk * 60.0 * (1.0 - 6.0 * x + 6.0 * x * x),
+    )
 
 
 def sine(amplitude: float, frequency: float, offset: float = 0.0, phase: float = 0.0) -> Reference:
     """offset + amplitude sin(2 pi frequency t + phase): m, Hz, m, rad; UsageError unless all are finite."""
     _finite(amplitude=amplitude, frequency=frequency, offset=offset, phase=phase)
     rate = 2.0 * math.pi * frequency
-    return lambda time: offset + amplitude * math.sin(rate * time + phase)
+
+    def motion(time: float) -> Setpoint:
+        up, across = amplitude * math.sin(rate * time + phase), amplitude * math.cos(rate * time + phase)
+        return Setpoint(offset + up, rate * across, -(rate**2) * up, -(rate**3) * across)
+
+    return motion
 
 
 def _finite(**values: float) -> None:

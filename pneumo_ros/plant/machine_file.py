@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from pneumo_ros.errors import DataError, UsageError
-from pneumo_ros.files import write_whole
+from pneumo_ros.files import write_whole, yaml_number
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.effect import brief
 from pneumo_ros.plant.library import FRAME, Library
@@ -130,16 +130,8 @@ def machine_text(model: Model) -> str:
             section = owner
         specification = model.specification(dotted)
         unit = "" if specification.unit == "1" else f"[{specification.unit}] "
-        lines.append(f"      {key}: {_yaml_number(value)}  # {unit}{specification.meaning}")
+        lines.append(f"      {key}: {yaml_number(value)}  # {unit}{specification.meaning}")
     return "\n".join(lines) + "\n"
-
-
-def _yaml_number(value: float) -> str:
-    """Shortest text that both YAML 1.1 and ROS read back as the same double."""
-    mantissa, e, exponent = repr(float(value)).partition("e")
-    if "." not in mantissa:
-        mantissa += ".0"
-    return mantissa + (f"e{int(exponent):+03d}" if e else "")
 
 
 def save_model(model: Model, path: str | Path, *, overwrite: bool = True) -> Path:

@@ -5,6 +5,7 @@ PRESSURE_A = "chamber_a/pressure"
 PRESSURE_B = "chamber_b/pressure"
 SUPPLY_PRESSURE = "supply/pressure"
 COMMAND = "valve/command"
+SETPOINT = "setpoint"  # what the controller wants right now, for plots
 DESCRIPTION = "description"
 
 TYPES = {
@@ -16,6 +17,7 @@ TYPES = {
     "position/reference": "std_msgs/msg/Float64",
     "joint_trajectory": "trajectory_msgs/msg/JointTrajectory",
     "joint_commands": "sensor_msgs/msg/JointState",
+    SETPOINT: "sensor_msgs/msg/JointState",
     DESCRIPTION: "std_msgs/msg/String",
 }
 GLOBAL_TYPES = {

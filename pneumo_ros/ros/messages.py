@@ -46,12 +46,13 @@ def _type(message: JointState | FluidPressure | Clock | Float64) -> str:
     return f"{type(message).__module__.partition('.')[0]}/msg/{type(message).__name__}"
 
 
-def joint_state(joint: str, velocity: bool = True) -> Template:
-    """Template of a joint state; `fill` takes position [m], velocity [m/s] (if there is one) and effort [N]."""
-    position, speed, effort = 1.2345e-67, 2.3456e-78, 3.4567e-89
-    message = JointState(name=[joint], position=[position], velocity=[speed] if velocity else [], effort=[effort])
+def joint_state(joint: str, velocity: bool = True, effort: bool = True) -> Template:
+    """Template of a joint state; `fill` takes position [m] and, of what there is, velocity [m/s] and effort [N]."""
+    position, speed, force = 1.2345e-67, 2.3456e-78, 3.4567e-89
+    speeds, forces = [speed] if velocity else [], [force] if effort else []
+    message = JointState(name=[joint], position=[position], velocity=speeds, effort=forces)
     message.header.stamp = _MARK
-    return Template(message, [position, speed, effort] if velocity else [position, effort])
+    return Template(message, [position, *speeds, *forces])
 
 
 def pressure(frame: str) -> Template:

@@ -19,7 +19,8 @@ Values = Mapping[str, Any]
 class Parameters:
     """The declared parameters of one node.
 
-    `given` are those from files and command line, which rclpy declared without description. A change from outside runs
+    `begun_with` are those from files and command line, which rclpy declared without description; `given`, what of them
+    is not yet declared. A change from outside runs
     `check` with all values as they would become, which may raise UsageError and changes nothing, then `apply`.
     """
 
@@ -35,6 +36,7 @@ class Parameters:
             for name in names
             if name not in _ROS_OWN and not name.startswith("qos_overrides.")
         }
+        self.begun_with: Values = dict(self.given)
         for name in self.given:
             node.undeclare_parameter(name)
         node.add_pre_set_parameters_callback(self._whole_numbers)

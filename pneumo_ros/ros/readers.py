@@ -42,9 +42,12 @@ def pressure(data: bytes) -> float:
 class JointReader:
     """Reads one joint, by name, from joint states; a message laid out like the last one is read at the same places."""
 
-    def __init__(self, joint: str) -> None:
-        """Look for `joint`."""
-        self._joint = joint
+    def __init__(self, joint: str, whole: bool = False) -> None:
+        """Look for `joint`; with `whole` only where there are as many positions as names.
+
+        ros2_control leaves out what a joint has no interface for: then nobody can tell whose positions these are.
+        """
+        self._joint, self._whole = joint, whole
         self._length, self._fixed, self._after = -1, b"", b""
         self._begin = self._end = self._position = self._velocity = 0
 
@@ -73,26 +76,37 @@ class JointReader:
 
     def _learn(self, data: bytes) -> bool:
         message = deserialize_message(data, JointState)
-        if self._joint not in message.name or message.name.index(self._joint) >= len(message.position):
+        index, positions = self._index(message), len(message.position)
+        if index is None:
             return False
-        index, positions = message.name.index(self._joint), len(message.position)
         at = _aligned(_START + 4 + _COUNT.unpack_from(data, _START)[0], 4) + 4
         for name in message.name:
             at = _aligned(at, 4) + 4 + len(name.encode()) + 1
         self._begin = _aligned(_aligned(at, 4) + 4, 8)
         self._end = self._begin + 8 * positions
         self._position = self._begin + 8 * index
-        self._velocity = _aligned(self._end + 4, 8) + 8 * index if index < len(message.velocity) else 0
+        self._velocity = _aligned(self._end + 4, 8) + 8 * index if self._has_velocity(message, index) else 0
         self._length, self._fixed, self._after = len(data), data[_START : self._begin], data[self._end : self._end + 4]
         return True
 
     def _of_message(self, message: JointState) -> JointSample | None:
-        names, stamp = list(message.name), message.header.stamp
-        if self._joint not in names or names.index(self._joint) >= len(message.position):
+        index, stamp = self._index(message), message.header.stamp
+        if index is None:
+            return None
+        velocity = message.velocity[index] if self._has_velocity(message, index) else None
+        return JointSample(stamp.sec * 1_000_000_000 + stamp.nanosec, message.position[index], velocity)
+
+    def _index(self, message: JointState) -> int | None:
+        """Where the joint's position stands; None if there is none, or nobody can tell."""
+        names, positions = list(message.name), len(message.position)
+        if self._joint not in names or (self._whole and positions != len(names)):
             return None
         index = names.index(self._joint)
-        velocity = message.velocity[index] if index < len(message.velocity) else None
-        return JointSample(stamp.sec * 1_000_000_000 + stamp.nanosec, message.position[index], velocity)
+        return index if index < positions else None
+
+    def _has_velocity(self, message: JointState, index: int) -> bool:
+        velocities = len(message.velocity)
+        return velocities == len(message.name) if self._whole else index < velocities
 
 
 def _aligned(offset: int, size: int) -> int:

@@ -14,8 +14,9 @@ import pytest
 import pneumo_ros
 
 ROOT = Path(__file__).parents[2]
-CONFIG = sorted(path.relative_to(ROOT / "pneumo_ros") for path in (ROOT / "pneumo_ros" / "config").rglob("*.yaml"))
+CONFIG = sorted(path.relative_to(ROOT / "pneumo_ros") for path in (ROOT / "pneumo_ros" / "config").rglob("*.[yrxj]*"))
 LAUNCH = sorted(path.name for path in (ROOT / "launch").glob("*.launch.py"))
+URDF = sorted(path.name for path in (ROOT / "urdf").glob("*.xacro"))
 EXECUTABLES = ("pneumo", "simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
 # A child must find its own libraries, not those of this session's environment
 CLEAN = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH")}
@@ -56,11 +57,15 @@ def test_the_wheel_carries_machine_files_and_share(wheel: Path) -> None:
     share = f"pneumo_ros-{pneumo_ros.__version__}.data/data/share"
     assert CONFIG
     assert LAUNCH
+    assert URDF
+    assert {path.suffix for path in CONFIG} == {".yaml", ".rviz", ".xml", ".json"}
     for path in CONFIG:
         assert f"pneumo_ros/{path}" in names
         assert f"{share}/pneumo_ros/{path}" in names
     for launch in LAUNCH:
         assert f"{share}/pneumo_ros/launch/{launch}" in names
+    for urdf in URDF:
+        assert f"{share}/pneumo_ros/urdf/{urdf}" in names
     assert f"{share}/pneumo_ros/package.xml" in names
     assert f"{share}/ament_index/resource_index/packages/pneumo_ros" in names
     assert "pneumo_ros/py.typed" in names
@@ -119,6 +124,7 @@ def test_colcon_puts_data_where_ros2_looks(workspace: Path) -> None:
     assert (share / "pneumo_ros" / "package.xml").exists()
     assert all((share / "pneumo_ros" / path).exists() for path in CONFIG)
     assert all((share / "pneumo_ros" / "launch" / launch).exists() for launch in LAUNCH)
+    assert all((share / "pneumo_ros" / "urdf" / urdf).exists() for urdf in URDF)
 
 
 def test_what_colcon_built_runs(workspace: Path) -> None:

@@ -3,6 +3,7 @@
 import ast
 import importlib.util
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -36,11 +37,17 @@ def test_there_are_launch_files() -> None:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_nodes_name_our_executables(path: Path) -> None:
-    nodes = calls(path, "Node")
+    nodes = [node for node in calls(path, "Node") if constant(node, "package") == "pneumo_ros"]
     assert nodes
     for node in nodes:
-        assert constant(node, "package") == "pneumo_ros"
         assert constant(node, "executable") in EXECUTABLES
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_packages_of_others_are_declared(path: Path) -> None:
+    declared = {element.text for element in ElementTree.parse(ROOT / "package.xml").getroot().findall("exec_depend")}
+    used = {constant(node, "package") for node in calls(path, "Node")} - {"pneumo_ros"}
+    assert used <= declared
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)

@@ -44,6 +44,13 @@ class PathJoinSubstitution(_Substitution):
         return str(Path(*(_text(part, arguments) for part in self.content)))
 
 
+class Command(_Substitution):
+    """Is not run: its text stands for what it would say."""
+
+    def perform(self, arguments: Arguments) -> str:
+        return _text(self.content, arguments)
+
+
 class PythonExpression(_Substitution):
     def perform(self, arguments: Arguments) -> str:
         return str(eval(_text(self.content, arguments), {}))
@@ -75,13 +82,15 @@ class Node:
         *,
         package: str,
         executable: str,
-        namespace: Any,
-        parameters: list[Any],
-        output: str,
+        namespace: Any = "",
+        parameters: list[Any] | None = None,
+        arguments: list[Any] | None = None,
+        remappings: list[tuple[str, str]] | None = None,
+        output: str = "log",
         condition: IfCondition | None = None,
     ) -> None:
-        assert package == "pneumo_ros"
-        self.executable, self.namespace, self.parameters, self.condition = executable, namespace, parameters, condition
+        self.package, self.executable, self.namespace, self.condition = package, executable, namespace, condition
+        self.parameters, self.arguments = parameters or [], arguments or []
 
 
 MODULES = {
@@ -89,6 +98,7 @@ MODULES = {
     "launch.actions": {"DeclareLaunchArgument": DeclareLaunchArgument},
     "launch.conditions": {"IfCondition": IfCondition},
     "launch.substitutions": {
+        "Command": Command,
         "LaunchConfiguration": LaunchConfiguration,
         "PathJoinSubstitution": PathJoinSubstitution,
         "PythonExpression": PythonExpression,
@@ -101,10 +111,31 @@ MODULES = {
 
 
 def commands(file: str, place: Path, **given: object) -> dict[str, list[str]]:
-    """Commands by "namespace/executable" that launch/`file` starts with the arguments given.
+    """Commands by "namespace/executable" of this package that launch/`file` starts with the arguments given.
 
     Parameters go to files in `place`, as launch writes them.
     """
+    nodes, arguments = _started(file, given)
+    ours = [one for one in nodes if one.package == "pneumo_ros"]
+    return {f"{_text(one.namespace, arguments)}/{one.executable}": _command(one, place, arguments) for one in ours}
+
+
+def others(file: str, **given: object) -> dict[str, tuple[list[str], dict[str, str]]]:
+    """Command-line arguments and parameters, as text, of what launch/`file` starts from other packages."""
+    nodes, arguments = _started(file, given)
+    found = {}
+    for one in nodes:
+        if one.package != "pneumo_ros":
+            values = {
+                k: _text(v, arguments) for entry in one.parameters if isinstance(entry, dict) for k, v in entry.items()
+            }
+            files = {_text(entry, arguments): "" for entry in one.parameters if not isinstance(entry, dict)}
+            found[one.executable] = ([_text(part, arguments) for part in one.arguments], {**values, **files})
+    return found
+
+
+def _started(file: str, given: Mapping[str, object]) -> tuple[list[Node], dict[str, str]]:
+    """The nodes whose conditions hold, and all launch arguments."""
     entities = _load(file).generate_launch_description()
     declared = {entity.name: entity.default for entity in entities if isinstance(entity, DeclareLaunchArgument)}
     assert set(given) <= set(declared), f"{file} has the arguments {sorted(declared)}"
@@ -113,8 +144,7 @@ def commands(file: str, place: Path, **given: object) -> dict[str, list[str]]:
     assert None not in values.values(), f"arguments without default: {values}"
     arguments = {name: _text(value, {}) for name, value in values.items()}
     nodes = [entity for entity in entities if isinstance(entity, Node)]
-    wanted = [one for one in nodes if one.condition is None or one.condition.holds(arguments)]
-    return {f"{_text(one.namespace, arguments)}/{one.executable}": _command(one, place, arguments) for one in wanted}
+    return [one for one in nodes if one.condition is None or one.condition.holds(arguments)], arguments
 
 
 def _command(node: Node, place: Path, arguments: Arguments) -> list[str]:
@@ -145,6 +175,8 @@ def _value(value: Any, arguments: Arguments) -> Any:
 def _text(value: Any, arguments: Arguments) -> str:
     if isinstance(value, _Substitution):
         return value.perform(arguments)
+    if isinstance(value, ParameterValue):
+        return _text(value.value, arguments)
     if isinstance(value, list):
         return "".join(_text(part, arguments) for part in value)
     return str(value)

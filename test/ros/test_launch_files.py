@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from ros.launching import ROOT, commands
+from ros.launching import ROOT, commands, others
 
 IDENTIFY = {"rig/simulator", "twin/simulator", "rig/experiment", "identified/identification"}
 
@@ -20,7 +20,11 @@ def test_the_axis_is_a_simulator_and_a_controller_of_the_same_machine(tmp_path: 
     nodes = commands("axis.launch.py", tmp_path)
     assert set(nodes) == {"/simulator", "/controller"}
     for command in nodes.values():
-        assert command[command.index("--params-file") + 1] == str(ROOT / "config" / "axis.yaml")
+        assert str(ROOT / "config" / "axis.yaml") in command
+    assert str(ROOT / "config" / "control" / "pid.yaml") in nodes["/controller"]
+    mine = commands("axis.launch.py", tmp_path, control="mine.yaml")
+    assert "mine.yaml" in mine["/controller"]
+    assert "mine.yaml" not in mine["/simulator"]
 
 
 def test_the_axis_is_recorded_if_a_folder_is_named(tmp_path: Path) -> None:
@@ -49,3 +53,27 @@ def test_the_experiment_is_made_for_the_machine_of_the_twin_and_the_twin_is_the_
     assert identification["target"] == "/model_1/simulator"
     assert identification["model"] == "guess.yaml"
     assert identification["folder"] == "1"
+
+
+def test_below_ros2_control_the_plant_lives_in_a_namespace(tmp_path: Path) -> None:
+    nodes = commands("ros2_control.launch.py", tmp_path, namespace="rig")
+    assert set(nodes) == {"rig/simulator", "rig/controller"}
+    assert set(commands("ros2_control.launch.py", tmp_path, simulate="false")) == {"cylinder_1/controller"}
+    above = others("ros2_control.launch.py", namespace="rig", rviz="true")
+    assert set(above) == {"robot_state_publisher", "ros2_control_node", "spawner", "rviz2"}
+    made = above["robot_state_publisher"][1]["robot_description"]
+    assert made == f"xacro {ROOT}/urdf/axis.urdf.xacro namespace:=rig plugin:=JointStateTopicSystem"
+    for file in (*above["ros2_control_node"][1], above["rviz2"][0][1]):
+        assert Path(file).is_file()
+
+
+def test_the_arm_has_two_axes_with_joints_of_their_own(tmp_path: Path) -> None:
+    nodes = commands("two_axes.launch.py", tmp_path, reach_params="reach.yaml")
+    assert set(nodes) == {f"{axis}/{name}" for axis in ("lift", "reach") for name in ("simulator", "controller")}
+    for name, command in nodes.items():
+        assert parameters(command) == {"joint_name": f"{name.partition('/')[0]}_piston"}
+    assert "reach.yaml" in nodes["reach/controller"]
+    assert "reach.yaml" not in nodes["lift/controller"]
+    above = others("two_axes.launch.py")
+    assert set(above) == {"joint_state_publisher", "robot_state_publisher"}
+    assert "/lift/joint_states" in above["joint_state_publisher"][1]["source_list"]

@@ -28,7 +28,7 @@ def main(args: Sequence[str] | None = None) -> int:
 
 def _nodes(effects_files: Sequence[str]) -> list[AxisNode]:
     """Both nodes; each leaves alone what is the other's among the parameters that both are given."""
-    theirs = {setting.name for setting in controller_settings.SETTINGS}
-    simulator = Simulator(effects_files, lambda name: name in theirs and not name.startswith("dead_zone."))
+    theirs = {setting.name for setting in controller_settings.SETTINGS} - controller_settings.OF_THE_MACHINE
+    simulator = Simulator(effects_files, lambda name: name in theirs)
     clock = simulator.simulated_clock  # a pause of the plant is no silence, and /clock would halve the speed
     return [simulator, Controller(lambda name: name in simulator.parameters, clock)]

@@ -1,4 +1,4 @@
-"""The controller: one valve command per joint state."""
+"""The controller: one valve command per joint state; what is asked of it comes in by `inputs` and `services`."""
 
 import threading
 import time
@@ -12,15 +12,22 @@ from std_msgs.msg import Float64
 from pneumo_ros.control import Law
 from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages, readers
+from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
+from pneumo_ros.ros.controller.guiding import limits_of, set_guide
+from pneumo_ros.ros.controller.health import health_of
+from pneumo_ros.ros.controller.inputs import Inputs
 from pneumo_ros.ros.controller.loop import Loop
+from pneumo_ros.ros.controller.services import Services
+from pneumo_ros.ros.controller.setpoints import Setpoints
 from pneumo_ros.ros.controller.settings import (
     LAWS,
     SETTINGS,
+    absent,
     gains_of,
+    machine_of,
     of_a_machine_file,
     reference_of,
     valve_of,
-    without_dead_zone,
 )
 from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
@@ -28,12 +35,11 @@ from pneumo_ros.ros.parameters import Values
 from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 
-REFERENCE = "position/reference"
 CHECK = 0.02  # s between looks for silence
 
 
 class Controller(AxisNode):
-    """Follows `position/reference` or a built-in reference; sends 0 V when measurements stay away, and at the end."""
+    """Follows what it is sent or a built-in reference; sends 0 V when measurements stay away, and at the end."""
 
     def __init__(
         self, tolerated: Callable[[str], bool] = lambda name: False, clock: Callable[[], int] | None = None
@@ -44,47 +50,70 @@ class Controller(AxisNode):
         """
         super().__init__("controller", SETTINGS)
         values = self.parameters
-        values.update(without_dead_zone(values.given))
-        foreign = of_a_machine_file(values.given)
+        values.update(absent(values.begun_with))
+        foreign = of_a_machine_file(values.begun_with)
         values.refuse_unknown(lambda name: name in foreign or tolerated(name))
         self._joint, self._law = values["joint_name"], values["law"]
-        self.loop = Loop(self._make_law(values.values()), reference_of(values.values()), values["measurement_timeout"])
+        self._check(values.values())
+        self.loop = Loop(self._make_law(values.values()), values["measurement_timeout"])
+        self.loop.guide.built_in = reference_of(values.values())
+        set_guide(self.loop.guide, values.values(), 0.0)
         values.check, values.apply = self._check, self._apply
         self._clock_ns = clock or (self._simulated if values.uses_simulated_time else time.monotonic_ns)
         self._heard: int | None = None  # when the last measurement came
+        self._stamp = 0  # of the last measurement
         self._stale = self._finished = False
         self._sending = threading.Lock()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
+        self._setpoints = Setpoints(self, self._joint)
         self._listen()
+        self.inputs, self._service_calls = Inputs(self, self._joint), Services(self)
+        self._action = Following(self, FollowJointTrajectory) if FollowJointTrajectory else None
 
     def _listen(self) -> None:
         self._reader = readers.JointReader(self._joint)
         self.create_subscription(JointState, JOINT_STATES, self._joint_states, SUBSCRIBE, raw=True)
         for chamber, topic in (("a", PRESSURE_A), ("b", PRESSURE_B)) if self.loop.law.reads_pressures else ():
             self.create_subscription(FluidPressure, topic, partial(self._pressure, chamber), SUBSCRIBE, raw=True)
-        self.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
         self.create_timer(CHECK, self._watch, clock=self.steady_clock)
 
     def _simulated(self) -> int:
         """While the plant pauses, this time does so, too: no silence."""
         return int(self.get_clock().now().nanoseconds)
 
+    # --- time -------------------------------------------------------------------------------------------------------
+
+    def _since(self) -> int:
+        """Time [ns] since the last measurement, no more than the timeout: later it is a pause."""
+        if self._heard is None:
+            return 0
+        return min(max(self._clock_ns() - self._heard, 0), round(self.loop.timeout * 1e9))
+
+    def loop_now(self) -> float:
+        """The present time of the control loop [s]."""
+        return self.loop.time + self._since() * 1e-9
+
+    def stamp_now(self) -> int:
+        """The present time [ns] on the clock of the measurements' stamps; ROS's where they have none."""
+        return self._stamp + self._since() if self._stamp else self.get_clock().now().nanoseconds
+
     # --- parameters -------------------------------------------------------------------------------------------------
 
     def _make_law(self, values: Values) -> Law:
-        return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values))
+        return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
 
     def _check(self, values: Values) -> None:
-        self._make_law(values)
+        limits_of(values).on_stroke(self._make_law(values).machine.stroke)
         reference_of(values)
 
     def _apply(self, changed: Values) -> None:
-        values = {**self.parameters.values(), **changed}
-        self.loop.law.tune(gains_of(self._law, values))
-        self.loop.law.valve = valve_of(values)
-        self.loop.timeout = values["measurement_timeout"]
+        values, loop = {**self.parameters.values(), **changed}, self.loop
+        loop.law.tune(gains_of(self._law, values))
+        loop.law.valve, loop.law.machine = valve_of(values), machine_of(values)
+        loop.timeout = values["measurement_timeout"]
+        set_guide(loop.guide, values, self.loop_now())
         if any(name.startswith("reference.") for name in changed):
-            self.loop.reference = reference_of(values)
+            loop.guide.built_in = reference_of(values)
 
     # --- topics -----------------------------------------------------------------------------------------------------
 
@@ -96,8 +125,9 @@ class Controller(AxisNode):
         now = self._clock_ns()
         voltage = self.loop.measure(sample.stamp or now, sample.position, sample.velocity)
         if voltage is not None:
-            self._heard, self._stale = now, self._recovered()
-            self._send(voltage)
+            self._heard, self._stamp, self._stale = now, sample.stamp, self._recovered()
+            self.send(voltage)
+            self._setpoints.tell(self.loop.wanted, self.loop.time, self.stamp_now())
 
     def _recovered(self) -> bool:
         if self._stale:
@@ -112,22 +142,22 @@ class Controller(AxisNode):
         )
 
     def _pressure(self, chamber: str, data: bytes) -> None:
-        self.loop.pressures[chamber] = readers.pressure(data)
-
-    def _reference(self, message: Float64) -> None:
-        if self.loop.reference is None and not self.loop.want(message.data):
-            self.get_logger().warning(f"reference {message.data} refused", throttle_duration_sec=5.0)
+        self.loop.press(chamber, readers.pressure(data))
 
     def _watch(self) -> None:
-        """0 V, again and again, while no measurement comes."""
-        if self._heard is None or self._clock_ns() - self._heard < self.loop.timeout * 1e9:
+        """0 V, again and again, while no measurement comes. A clock that was set back counts from there."""
+        if self._heard is None:
+            return
+        self._heard = min(self._heard, self._clock_ns())
+        if self._clock_ns() - self._heard < self.loop.timeout * 1e9:
             return
         if not self._stale:
             self._stale = True
             self.get_logger().warning(f"no measurement for {self.loop.timeout:g} s: sending 0 V")
-        self._send(0.0)
+        self.send(0.0)
 
-    def _send(self, voltage: float) -> None:
+    def send(self, voltage: float) -> None:
+        """A valve command [V]; none after the last one."""
         with self._sending:
             if not self._finished:
                 self._publisher.publish(self._message.fill(0, voltage))
@@ -141,22 +171,12 @@ class Controller(AxisNode):
 
     def finish(self) -> None:
         """0 V is the last command."""
-        self._send(0.0)
+        self.send(0.0)
         with self._sending:
             self._finished = True
         self._publisher.wait_for_all_acked(Duration(seconds=0.2))
 
     def health(self) -> Health:
-        """Counts, errors and what is missing."""
-        loop = self.loop
-        values: dict[str, object] = {"measurements": loop.measured, "rejected_inputs": loop.refused}
-        values |= {"saturated_commands": loop.saturated, "restarts": loop.restarts, "voltage_V": loop.voltage}
-        if self._heard is not None:
-            values["measurement_age_s"] = (self._clock_ns() - self._heard) * 1e-9
-        if loop.wanted is not None and loop.position is not None:
-            values["position_error_m"] = loop.wanted - loop.position
-        missing = "no measurement yet" if self._heard is None else "measurements stay away: sending 0 V"
-        warnings = [missing] if self._heard is None or self._stale else []
-        if loop.wanted is None:
-            warnings.append("no reference yet: holding 0 V")
-        return Health(values, warnings)
+        """See `health_of`."""
+        age = None if self._heard is None else (self._clock_ns() - self._heard) * 1e-9
+        return health_of(self.loop, self.inputs.refused, age, self._stale)

@@ -3,14 +3,17 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pneumo_ros.control import Law, Pid, ValveInverse
-from pneumo_ros.control.reference import Reference, constant, sine, steps
-from pneumo_ros.plant.library import FRAME
+from pneumo_ros.control import LAWS, Machine, Reference, ValveInverse
+from pneumo_ros.control.machine import ABSENT, PARAMETERS
+from pneumo_ros.control.reference import constant, sine, steps
+from pneumo_ros.plant import load_model
+from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.ros.controller import guiding
+from pneumo_ros.ros.controller.guiding import limits_of
 from pneumo_ros.ros.priority import PRIORITY
 from pneumo_ros.ros.setting import Setting
 
-LAWS: Mapping[str, type[Law]] = {"pid": Pid}
 SHAPES = ("topic", "constant", "steps", "sine")
 _DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
 
@@ -29,6 +32,20 @@ _VALVE = (
     Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
     Setting("valve.smoothing", 0.02, "opening by which the jump across the dead zone is complete", "V", 0.0, 10.0),
 )
+EFFECTS = "effects"
+
+
+def _of_machine(name: str, default: float) -> Setting:
+    section, _, key = name.partition(".")
+    given = (Library.frame(section) if section in FRAME else Library().find(section)).parameters[key]
+    return Setting(name, default, given.meaning, "" if given.unit == "1" else given.unit, given.low, given.high)
+
+
+_MACHINE = (
+    Setting(EFFECTS, list(load_model("axis").effects), "effects that the machine file lists", live=False),
+    *(_of_machine(name, default) for name, default in PARAMETERS.items()),
+)
+OF_THE_MACHINE = frozenset({EFFECTS, *PARAMETERS, *(f"dead_zone.{name}" for name in _DEAD_ZONE)})
 _REFERENCE = (
     Setting("reference.shape", "topic", "where the reference comes from; topic: position/reference", choices=SHAPES),
     Setting("reference.position", 0.0, "reference of shape constant", "m", -100.0, 100.0),
@@ -43,7 +60,7 @@ _GAINS = tuple(
     for law, kind in LAWS.items()
     for name, gain in kind.gains.items()
 )
-SETTINGS = (*_OWN, *_REFERENCE, *_VALVE, *_GAINS)
+SETTINGS = (*_OWN, *_REFERENCE, *guiding.SETTINGS, *_VALVE, *_MACHINE, *_GAINS)
 
 
 def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
@@ -57,30 +74,50 @@ def valve_of(values: Mapping[str, Any]) -> ValveInverse:
     return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
 
 
-def reference_of(values: Mapping[str, Any]) -> Reference | None:
-    """The reference that the parameters describe, None if it comes from the topic; UsageError for bad values."""
-    shape = values["reference.shape"]
+def reference_of(values: Mapping[str, Any]) -> tuple[Reference, bool] | None:
+    """The reference that the parameters describe, and whether it jumps; None if it comes from topics.
+
+    UsageError for bad values, such as positions outside the limits and the stroke.
+    """
+    shape, offset = values["reference.shape"], values["reference.offset"]
     if shape == "constant":
-        return constant(values["reference.position"])
+        _require_within(values, values["reference.position"])
+        return constant(values["reference.position"]), True
     if shape == "steps":
-        return steps(list(values["reference.levels"]), values["reference.hold"])
+        _require_within(values, *values["reference.levels"])
+        return steps(list(values["reference.levels"]), values["reference.hold"]), True
     if shape == "sine":
-        return sine(values["reference.amplitude"], values["reference.frequency"], values["reference.offset"])
+        amplitude = values["reference.amplitude"]
+        _require_within(values, offset + amplitude, offset - amplitude)
+        return sine(amplitude, values["reference.frequency"], offset), False
     return None
 
 
+def _require_within(values: Mapping[str, Any], *positions: float) -> None:
+    limits = limits_of(values).on_stroke(machine_of(values).stroke)
+    for position in positions:
+        limits.require(position)
+
+
+def machine_of(values: Mapping[str, Any]) -> Machine:
+    """What the law knows of the machine."""
+    return Machine.of(values[EFFECTS], values)
+
+
 def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
-    """Names that a machine file brought along and that are not for the controller."""
-    effects = given.get("effects")
+    """Names that a machine file brought along and that no law uses."""
+    effects = given.get(EFFECTS)
     if effects is None:
         return set()
     sections = {*FRAME, *effects}
-    return {name for name in given if name == "effects" or name.partition(".")[0] in sections}
+    return {name for name in given if name.partition(".")[0] in sections}
 
 
-def without_dead_zone(given: Mapping[str, Any]) -> dict[str, float]:
-    """Limits for a machine file that lists no dead zone: its valve opens at once."""
-    effects = given.get("effects")
-    if effects is None or "dead_zone" in effects:
+def absent(given: Mapping[str, Any]) -> dict[str, float]:
+    """Values that stand for the effects which a machine file does not list: no friction, a valve that opens at once."""
+    effects = given.get(EFFECTS)
+    if effects is None:
         return {}
-    return {"dead_zone.right_limit": 0.0, "dead_zone.left_limit": 0.0}
+    known = {**ABSENT, "dead_zone.right_limit": 0.0, "dead_zone.left_limit": 0.0}
+    listed = {*FRAME, *effects}
+    return {n: value for n, value in known.items() if n.partition(".")[0] not in listed and n not in given}

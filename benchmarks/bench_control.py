@@ -1,0 +1,141 @@
+"""Control laws on the default machine and on others: tracking, arrival, valve activity; published protocols; time.
+
+All laws have the gains of config/control, found by one procedure (`pneumo tune`), and know the default machine file,
+whatever the plant is. Sensors: 10 um and 300 Pa of noise, no velocity; 1 kHz. The sine is 0.3 m, 0.05 Hz; the moves are
+60 mm in 1 s, held for 19 s.
+"""
+
+import argparse
+import time
+
+import control_cases as cases
+import numpy as np
+from control_cases import AXIS, HOLD, SINE, STEADY, follow, shipped
+
+from pneumo_ros.control import LAWS, Measurement
+from pneumo_ros.control.figures import arrivals, tracking
+from pneumo_ros.control.reference import sine, steps
+from pneumo_ros.plant import Model, load_model
+
+
+def main() -> None:
+    """Print what was asked for, by default all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", choices=("plants", "published", "discovery", "time"), help="one of the tables")
+    only = parser.parse_args().only
+    tables = {"plants": plants, "published": published, "discovery": discovery, "time": step_time}
+    for name, table in tables.items():
+        if only in (None, name):
+            table()
+
+
+def plants() -> None:
+    """Every law on every plant."""
+    head = f"{'plant':21} {'law':13} {'rms':>6} {'peak':>7} {'V/s':>6} {'slips':>6}"
+    print(f"{head} | {'steady':>7} {'settling':>9} {'hunting':>8}   [mm, s]; steady, hunting: worst of 4 moves")
+    rms = {(name, law): _row(name, plant, law) for name, plant in cases.PLANTS.items() for law in LAWS}
+    slow = cases.PLANTS["spool dynamics"]
+    print("once the machine file knows the spool:")
+    _row("spool dynamics", slow, "cascade", slow)
+    _targets(rms["nominal", "pid"], rms["nominal", "cascade"])
+
+
+def _row(name: str, plant: Model, law: str, known: Model = AXIS) -> float:
+    """Print what a law that knows one machine makes of another; returns its rms error along the sine [m]."""
+    along = tracking(follow(plant, shipped(law, known), SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN)
+    ends = arrivals(follow(plant, shipped(law, known), cases.STEPS, 5 * HOLD)[0], HOLD, STEADY)
+    slow = max(e.settling for e in ends)
+    settled = f"{slow:7.2f} s" if slow < HOLD else f"{'never':>9}"
+    print(
+        f"{name:21} {law:13} {1e3 * along.rms:6.2f} {1e3 * along.peak:7.2f} {along.activity:6.0f} "
+        f"{along.breakaways:6d} | {1e3 * max(e.error for e in ends):7.2f} {settled} "
+        f"{1e3 * max(e.motion for e in ends):8.3f}",
+        flush=True,
+    )
+    return along.rms
+
+
+def _targets(pid: float, cascade: float) -> None:
+    """The nominal figures beside what they should be."""
+    laws = [cases.own(f"{law}_for_sine.yaml", AXIS) for law in ("pid", "cascade")]
+    alone = [tracking(follow(AXIS, law, SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN).rms for law in laws]
+    raw = arrivals(follow(AXIS, shipped("cascade"), steps(cases.LEVELS, HOLD), 5 * HOLD)[0], HOLD, STEADY)
+    print(
+        f"cascade, nominal: {1e3 * cascade:.2f} mm rms (target: at most 1.50), "
+        f"{pid / cascade:.1f} x better than PID (target: at least 3.0)"
+    )
+    print(
+        f"with gains for this sine alone: PID {1e3 * alone[0]:.2f} mm, cascade {1e3 * alone[1]:.2f} mm rms, "
+        f"{alone[0] / alone[1]:.1f} x better"
+    )
+    print(
+        f"cascade, steps of 60 mm without a profile: steady {1e3 * max(e.error for e in raw):.2f} mm (target: at most "
+        f"0.30), settled after {max(e.settling for e in raw):.2f} s, motion afterwards "
+        f"{1e3 * max(e.motion for e in raw):.3f} mm"
+    )
+
+
+def published() -> None:
+    """The protocols of two papers on a cylinder of the size they used, and on one unlike its machine file."""
+    short = load_model(cases.HERE / "short_cylinder.yaml")
+    other = short.with_effects(
+        [*short.effects, "valve_spool_dynamics"], {"valve_spool_dynamics.angular_frequency": 400}
+    )
+    other = other.with_parameters({name: 1.2 * short[name] for name in cases.FRICTION})
+    known, unknown = _protocols(short, short), _protocols(short, other)
+    print("\nThe cascade, in simulation, on a cylinder of the size of published experiments (short_cylinder.yaml), and")
+    print("on one with 20 % more friction and a spool of 400 rad/s that its machine file does not know")
+    print(f"{'protocol':36} {'published':>17} {'as the file says':>26} {'not as it says':>26}")
+    rows = (
+        ("Bone and Ning 2007: 70 mm, 0.5 Hz", "rms < 0.4 mm"),
+        ("Zhu and Barth 2010: 60 mm, 0.5 Hz", "within 0.7 mm"),
+        ("Zhu and Barth 2010: 60 mm, 1 Hz", "within 1.2 mm"),
+        ("Zhu and Barth 2010: steps of 60 mm", "steady < 0.05 mm"),
+    )
+    for (protocol, theirs), one, two in zip(rows, known, unknown, strict=True):
+        print(f"{protocol:36} {theirs:>17} {one:>26} {two:>26}")
+
+
+def _protocols(known: Model, plant: Model) -> list[str]:
+    """What the cascade that knows one machine makes of another."""
+    found = []
+    for amplitude, frequency in ((0.07, 0.5), (0.06, 0.5), (0.06, 1.0)):
+        law = cases.own("short_cylinder_cascade.yaml", known)
+        seen = tracking(follow(plant, law, sine(amplitude, frequency), 22.0)[0], 2.0)
+        found.append(f"rms {1e3 * seen.rms:.3f}, peak {1e3 * seen.peak:.2f} mm")
+    law = cases.own("short_cylinder_cascade.yaml", known)
+    record = follow(plant, law, steps([k * cases.STEP for k in (0, 1, 0, 1, 0)], 3.0), 15.0)[0]
+    ends = arrivals(record, 3.0, 5e-5)
+    slowest = max(end.settling for end in ends)
+    return [*found, f"steady {1e3 * max(end.error for end in ends):.3f} mm, {slowest:.2f} s"]
+
+
+def discovery() -> None:
+    """Before and after an effect was found."""
+    from control_discovery import show
+
+    show()
+
+
+def step_time() -> None:
+    """Time of one step of each law, of steps along the sine."""
+    print(f"\n{'one control step':16} {'median':>10} {'99 %':>10}   (target: under 20 us)")
+    for law in LAWS:
+        _, shown = follow(AXIS, shipped(law), SINE, 10.0)
+        taken = _replayed(law, shown)
+        print(f"{law:16} {np.median(taken):7.1f} us {np.percentile(taken, 99):7.1f} us")
+
+
+def _replayed(name: str, shown: np.ndarray) -> np.ndarray:
+    """Times [us] of the steps that answer the same measurements again, without the plant in between."""
+    law, taken = shipped(name), np.empty(len(shown))
+    for k, (t, y, a, b) in enumerate(shown.tolist()):
+        wanted, seen = SINE(t), Measurement(t, y, None, a, b)
+        begin = time.perf_counter_ns()
+        law.step(wanted, seen)
+        taken[k] = 1e-3 * (time.perf_counter_ns() - begin)
+    return taken
+
+
+if __name__ == "__main__":
+    main()

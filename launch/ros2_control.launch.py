@@ -1,0 +1,70 @@
+"""One cylinder below ros2_control: the plant and its controller in a namespace, a joint_trajectory_controller above.
+
+Needs the packages ros2_control, ros2_controllers, joint_state_topic_hardware_interface (Humble:
+topic_based_ros2_control), robot_state_publisher and xacro.
+
+ros2 launch pneumo_ros ros2_control.launch.py namespace:=cylinder_1 rviz:=true
+ros2 launch pneumo_ros ros2_control.launch.py simulate:=false namespace:=rig
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+SHARE = FindPackageShare("pneumo_ros")
+ARGUMENTS = [
+    DeclareLaunchArgument("namespace", default_value="cylinder_1", description="namespace of plant and controller"),
+    DeclareLaunchArgument(
+        "params", default_value=PathJoinSubstitution([SHARE, "config", "axis.yaml"]), description="machine file"
+    ),
+    DeclareLaunchArgument("simulate", default_value="true", description="simulate the plant; false: there is a rig"),
+    DeclareLaunchArgument(
+        "plugin", default_value="JointStateTopicSystem", description="Jazzy and later; Humble: TopicBasedSystem"
+    ),
+    DeclareLaunchArgument("rviz", default_value="false", description="show the cylinder in rviz"),
+]
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Simulator and controller below, ros2_control and its controllers above, which own /joint_states."""
+    namespace, machine = LaunchConfiguration("namespace"), [LaunchConfiguration("params")]
+    urdf = PathJoinSubstitution([SHARE, "urdf", "axis.urdf.xacro"])
+    made = Command(["xacro ", urdf, " namespace:=", namespace, " plugin:=", LaunchConfiguration("plugin")])
+    description = {"robot_description": ParameterValue(made, value_type=str)}
+    controllers = PathJoinSubstitution([SHARE, "config", "ros2_control.yaml"])
+    simulator = Node(
+        package="pneumo_ros",
+        executable="simulator",
+        namespace=namespace,
+        parameters=machine,
+        output="screen",
+        condition=IfCondition(LaunchConfiguration("simulate")),
+    )
+    controller = Node(
+        package="pneumo_ros", executable="controller", namespace=namespace, parameters=machine, output="screen"
+    )
+    publisher = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[description])
+    manager = Node(
+        package="controller_manager",
+        executable="ros2_control_node",
+        parameters=[controllers],
+        remappings=[("~/robot_description", "/robot_description")],
+        output="screen",
+    )
+    spawner = Node(
+        package="controller_manager",
+        executable="spawner",
+        arguments=["joint_state_broadcaster", "joint_trajectory_controller"],
+        output="screen",
+    )
+    rviz = Node(
+        package="rviz2",
+        executable="rviz2",
+        arguments=["-d", PathJoinSubstitution([SHARE, "config", "rviz", "axis.rviz"])],
+        condition=IfCondition(LaunchConfiguration("rviz")),
+    )
+    return LaunchDescription([*ARGUMENTS, simulator, controller, publisher, manager, spawner, rviz])

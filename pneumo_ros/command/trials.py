@@ -1,0 +1,104 @@
+"""What a control law is tuned on: a sine and moves, on the machine and on a harsher one."""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pneumo_ros.control.reference import moves, sine
+from pneumo_ros.control.tuning import Trial
+from pneumo_ros.plant import Stepper
+
+if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
+
+SAMPLE_TIME = 1e-3  # s
+AMPLITUDE, STEP = 0.15, 0.03  # of the stroke: 0.3 m and 60 mm of the default machine
+SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of what the machine does at full voltage
+MOVE_FORCE = 0.3  # greatest force that accelerates, of what the supply makes in the smaller chamber
+HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass of the other machine that the gains must suit
+SPOOL = "valve_spool_dynamics"
+HOLD = 4.0  # s after each move
+RUN_UP = 0.2  # of a period of the sine, not judged
+JUDGED = 8.0  # s of the sine at least, in whole periods
+TOLERANCE = 3e-4  # m
+
+
+@dataclass(frozen=True)
+class Task:
+    """A sine of `amplitude` [m] and `frequency` [Hz], and moves of `step` [m] in `duration` [s]."""
+
+    amplitude: float
+    frequency: float
+    step: float
+    duration: float
+
+
+def task_for(
+    model: "Model", amplitude: float | None = None, frequency: float | None = None, step: float | None = None
+) -> Task:
+    """What is not given follows from stroke and speed of the machine."""
+    height = amplitude or AMPLITUDE * model["piston.stroke"]
+    way, top = step or STEP * model["piston.stroke"], top_speed(model)
+    return Task(height, frequency or SINE_SPEED * top / (2.0 * np.pi * height), way, _duration(model, way, top))
+
+
+def _duration(model: "Model", way: float, top: float) -> float:
+    """A move of least jerk reaches 1.875 way / T and 5.77 way / T^2."""
+    supply = model["air.supply_pressure"] - model["air.atmospheric_pressure"]
+    force = min(model["piston.area_a"], model["piston.area_b"]) * supply
+    return float(
+        max(1.875 * way / (MOVE_SPEED * top), np.sqrt(5.77 * way * model["piston.mass"] / (MOVE_FORCE * force)))
+    )
+
+
+def top_speed(model: "Model", voltage: float = 10.0) -> float:
+    """Speed [m/s] that the machine reaches at +-`voltage` [V], of both the smaller, from the far end of its stroke."""
+    speeds = []
+    for sign in (1.0, -1.0):
+        begin = begin_at(model, -0.4 * sign * model["piston.stroke"])
+        ran = model.simulate(np.full(20_000, sign * voltage), begin, sample_time=SAMPLE_TIME)
+        inside = np.abs(ran[:, 0]) < 0.45 * model["piston.stroke"]
+        speeds.append(float(np.max(sign * ran[inside, 1])))
+    return min(speeds)
+
+
+def begin_at(model: "Model", position: float) -> np.ndarray:
+    """State (states,) at rest at `position` [m], the forces of both chambers in balance at half of the supply."""
+    p_0, p_s = model["air.atmospheric_pressure"], model["air.supply_pressure"]
+    p_a = p_0 + 0.4 * (p_s - p_0)
+    drive = model["piston.area_a"] * (p_a - p_0)
+    return model.state(y=position, p_a=p_a, p_b=p_0 + drive / model["piston.area_b"])
+
+
+def stepper(model: "Model", position: float = 0.0) -> Stepper:
+    """The machine at rest at `position` [m], stepped at 1 kHz."""
+    return Stepper(model, begin_at(model, position), sample_time=SAMPLE_TIME)
+
+
+def harsher(model: "Model", spool: float | None = None) -> "Model":
+    """The same machine with more friction and mass, and a `spool` of that angular frequency [rad/s]."""
+    factors = {
+        "piston.mass": HEAVIER,
+        "lugre_friction.static_friction": HARSHER,
+        "lugre_friction.coulomb_friction": HARSHER,
+    }
+    other = model.with_parameters({n: f * model[n] for n, f in factors.items() if n in model.parameters})
+    if spool is None:
+        return other
+    effects = [name for name in model.effects if name != SPOOL]
+    return other.with_effects([*effects, SPOOL], {f"{SPOOL}.angular_frequency": spool})
+
+
+def trials_of(model: "Model", task: Task, spool: float | None = None) -> list[Trial]:
+    """The sine and six moves, each on the machine and on the harsher one."""
+    period, levels = 1.0 / task.frequency, [k * task.step for k in (-1, 0, -1, 0, 1, 0, -1)]
+    whole = max(np.ceil(JUDGED / period), 1.0)
+    wave, ways = sine(task.amplitude, task.frequency), moves(levels, HOLD + task.duration, task.duration)
+    hold = HOLD + task.duration
+    found = []
+    for machine in (model, harsher(model, spool)):
+        found.append(Trial(partial(stepper, machine), wave, (whole + RUN_UP) * period, RUN_UP * period))
+        found.append(Trial(partial(stepper, machine, levels[0]), ways, len(levels) * hold, hold=hold, unit=TOLERANCE))
+    return found

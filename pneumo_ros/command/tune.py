@@ -1,0 +1,129 @@
+"""Find gains of a control law for a machine by simulation, and write the control file."""
+
+import argparse
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.console import Console, columns, program
+from pneumo_ros.errors import UsageError
+from pneumo_ros.files import check_writable, write_whole
+from pneumo_ros.nearest import unknown_name
+
+if TYPE_CHECKING:
+    from pneumo_ros.command.trials import Task
+    from pneumo_ros.control.control_file import Control
+    from pneumo_ros.control.law import Law
+    from pneumo_ros.control.tuning import Search
+    from pneumo_ros.plant import Model
+
+EVALUATIONS = 80
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--law, --out and what is to be followed."""
+    parser.add_argument("--law", metavar="NAME", help="pid, pva, cascade (default) or sliding_mode")
+    parser.add_argument("--out", required=True, metavar="FILE", help="control file to write")
+    parser.add_argument("--control", metavar="FILE", help="control file to start from (default: the law's defaults)")
+    parser.add_argument("--amplitude", type=float, metavar="M", help="of the sine to follow (default: 0.15 strokes)")
+    parser.add_argument("--frequency", type=float, metavar="HZ", help="of it (default: 0.64 of the top speed)")
+    parser.add_argument("--step", type=float, metavar="M", help="of the moves to make (default: 0.03 strokes)")
+    slow = "the gains must also suit a valve spool of this angular frequency, which the machine file need not know"
+    parser.add_argument("--spool", type=float, metavar="RAD/S", help=slow)
+    runs = f"how often to try gains, of which each try is four runs (default: {EVALUATIONS})"
+    parser.add_argument("--evaluations", type=int, default=EVALUATIONS, metavar="N", help=runs)
+    add_model(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Tune, write the control file, say what it costs and what changed."""
+    from pneumo_ros.command.trials import task_for
+    from pneumo_ros.control.control_file import Control
+
+    _check(options)
+    start, model = _start(options), chosen_model(options)
+    if model.force_driven:
+        raise UsageError(f"{model.name} has no valve to control; give a machine file with a section 'chambers'")
+    task = task_for(model, options.amplitude, options.frequency, options.step)
+    search = _search(options, start, model, task, console)
+    found = Control(start.law, {**start.gains, **search.gains}, start.smoothing)
+    write_whole(options.out, found.text(_heading(start.law, model, task, options.spool)))
+    _tell(options, start, model, search, console)
+    return 0
+
+
+def _check(options: argparse.Namespace) -> None:
+    check_writable(options.out)
+    for name in ("amplitude", "frequency", "step", "spool", "evaluations"):
+        value = getattr(options, name)
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise UsageError(f"--{name} is {value:g}; it takes a number above 0")
+
+
+def _start(options: argparse.Namespace) -> "Control":
+    from pneumo_ros.control import LAWS
+    from pneumo_ros.control.control_file import Control, load_control
+
+    given = load_control(options.control) if options.control else Control(options.law or "cascade", {})
+    if given.law not in LAWS:
+        raise UsageError(unknown_name("law", given.law, LAWS))
+    if options.law not in (None, given.law):
+        raise UsageError(f"--law is {options.law}, but {options.control} is for {given.law}; leave one of them out")
+    return given
+
+
+def _search(options: argparse.Namespace, start: "Control", model: "Model", task: "Task", console: Console) -> "Search":
+    from pneumo_ros.command.trials import trials_of
+    from pneumo_ros.control.control_file import Control
+    from pneumo_ros.control.tuning import Search
+
+    def make(gains: Mapping[str, float]) -> "Law":
+        return Control(start.law, {**start.gains, **gains}, start.smoothing).make(model.effects, model.parameters)
+
+    console.note(
+        f"Tuning {start.law} for {model.name}: sine of {task.amplitude:g} m, {task.frequency:.3g} Hz, and moves of "
+        f"{1e3 * task.step:g} mm"
+    )
+    with console.progress("Tuning") as progress:
+        search = Search(
+            make,
+            trials_of(model, task, options.spool),
+            options.evaluations,
+            lambda count, _: progress(count / options.evaluations),
+        )
+        search.run()
+    return search
+
+
+def _heading(law: str, model: "Model", task: "Task", spool: float | None) -> str:
+    slow = f" and a spool of {spool:g} rad/s" if spool else ""
+    return (
+        f"Gains of {law} for the machine {model.name}, found by simulation: pneumo tune --law {law}\n"
+        f"on a sine of {task.amplitude:g} m and {task.frequency:.3g} Hz and on moves of {1e3 * task.step:g} mm in "
+        f"{task.duration:.2g} s,\nwith the machine and with twice its mass, 20 % more friction{slow}."
+    )
+
+
+def _tell(options: argparse.Namespace, start: "Control", model: "Model", search: "Search", console: Console) -> None:
+    from pneumo_ros.control import LAWS
+
+    gains = LAWS[start.law].gains
+    before = {name: start.gains.get(name, gains[name].default) for name in search.gains}
+    rows = [(n, f"{before[n]:g}", f"{search.gains[n]:g}", gains[n].unit) for n in search.gains]
+    console.say(f"Tuned {start.law} for {model.name}: cost {search.first:.3f} -> {search.least:.3f}")
+    console.say(columns([("gain", "before", "after", ""), *rows], right=(1, 2)))
+    node = f"ros2 run pneumo_ros controller --ros-args --params-file {options.out}"
+    console.say(f"Written to {options.out}; use: {node} --params-file MACHINE.yaml; see also: {program()} tune --help")
+    console.json(
+        {
+            "schema_version": 1,
+            "model": model.name,
+            "law": start.law,
+            "gains": search.gains,
+            "cost": {"before": search.first, "after": search.least},
+            "evaluations": search.count,
+            "control": options.out,
+        }
+    )

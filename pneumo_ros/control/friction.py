@@ -1,0 +1,97 @@
+"""Friction of the seals as a control law estimates it: elasto-plastic LuGre friction, stepped exactly."""
+
+import math
+
+from pneumo_ros.control.machine import Machine
+
+SMALLEST = 1e-3  # N, least friction level that is divided by
+HEADROOM = 1.5  # most that a correction may bend the bristles, over what F_s does: F_s may be known too low
+TELLING = 0.02  # m/s, sliding at this speed tells the level; below, the Stribeck curve is too steep
+LEAST, MOST = 0.3, 3.0  # range of the learnt scale
+LOADED = 0.5  # largest bias, of the force that the supply can make
+FORGETTING = 0.5  # 1/s, while it sticks: what was learnt at an end stop must not hold it there
+
+
+class FrictionObserver:
+    """Bristle deflection z and friction force along an estimated velocity:
+
+        z' = v - alpha sigma_0 |v| z / g(v) + correction,    F = sigma_0 z + sigma_2 v + C_d v |v|
+        g(v) = F_c + (F_s - F_c) exp(-(v / v_s)^2)
+        alpha = 0 if v z < 0 or |z| <= z_ba(v), else 1,    z_ba = breakaway_ratio g(v) / sigma_0
+
+    Sources: Canudas de Wit et al. 1995, Eqs. 1-5; Dupont et al. 2000, Eqs. 4-8 (alpha; its ramp from 0 to 1 between
+    z_ba and z_max, over some micrometres, is a step here; a breakaway_ratio of 0 gives LuGre); Guenther, Perondi, De
+    Pieri and Valdiero 2006 (the correction, made of the tracking error; it acts while the piston sticks).
+
+    For v held over a sample the equation is linear in z, piece by piece, and the step is its exact solution: stable at
+    any speed and sample time, where an explicit one at 1 kHz is not above 0.1 m/s. sigma_1 is left out of F: it damps
+    the bristles' 84 Hz, which no valve follows. `learn` scales sigma_0 z, and adds a bias, to the force that
+    sliding is seen to take: friction changes its sign with the motion, a load does not.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        """Take the parameters of `machine`, which may be set anew under way; start with slack bristles."""
+        self.machine = machine
+        self.reset()
+
+    def reset(self) -> None:
+        """Slack bristles, nothing learnt."""
+        self.z, self.sliding, self.scale, self.bias = 0.0, False, 1.0, 0.0
+
+    def level(self, velocity: float) -> float:
+        """g(v) [N], the friction force of steady sliding without what grows with speed."""
+        m = self.machine
+        ratio = min(abs(velocity) / m.stribeck_velocity, 30.0)
+        return max(m.coulomb_friction + (m.static_friction - m.coulomb_friction) * math.exp(-ratio * ratio), SMALLEST)
+
+    def running(self, velocity: float) -> float:
+        """What grows with speed [N]: sigma_2 v + C_d v |v|."""
+        return (self.machine.viscous_friction + self.machine.drag * abs(velocity)) * velocity
+
+    def running_slope(self, velocity: float) -> float:
+        """Its derivative [N s/m]."""
+        return self.machine.viscous_friction + 2.0 * self.machine.drag * abs(velocity)
+
+    def step(self, velocity: float, dt: float, correction: float = 0.0) -> float:
+        """Go on by `dt` [s] at `velocity` [m/s]; `correction` [m/s] bends sticking bristles besides. Returns F [N]."""
+        left = dt - self._bend(velocity, dt, correction)
+        self.sliding = left > 0.0
+        if self.sliding:
+            steady = math.copysign(self.level(velocity) / self.machine.bristle_stiffness, velocity)
+            self.z = steady + (self.z - steady) * math.exp(-velocity / steady * left)
+        else:
+            self._forget(1.0 - math.exp(-FORGETTING * dt))
+        return self.force(velocity)
+
+    def force(self, velocity: float) -> float:
+        """F [N] at the present deflection."""
+        return self.scale * self.machine.bristle_stiffness * self.z + self.bias + self.running(velocity)
+
+    def learn(self, measured: float, velocity: float, share: float) -> None:
+        """Take up `share` of what is lacking to the `measured` friction [N]; only where sliding tells it.
+
+        Half goes to the scale, half to the bias; motion in both directions tells them apart (normalised least mean
+        squares: B. Widrow and S. D. Stearns, Adaptive Signal Processing, 1985).
+        """
+        if self.sliding and abs(velocity) > TELLING:
+            bristles, level = self.machine.bristle_stiffness * self.z, self.level(velocity)
+            lacking = share * (measured - self.force(velocity)) / (bristles * bristles + level * level)
+            self.scale = min(max(self.scale + lacking * bristles, LEAST), MOST)
+            most = LOADED * self.machine.area_a * (self.machine.supply_pressure - self.machine.atmospheric_pressure)
+            self.bias = min(max(self.bias + lacking * level * level, -most), most)
+
+    def _forget(self, share: float) -> None:
+        self.scale += share * (1.0 - self.scale)
+        self.bias -= share * self.bias
+
+    def _bend(self, velocity: float, dt: float, correction: float) -> float:
+        """Bend the bristles elastically; returns for how long [s] of `dt`. What is left they slip."""
+        m = self.machine
+        edge = m.breakaway_ratio * self.level(velocity) / m.bristle_stiffness
+        if velocity * self.z > 0.0 and abs(self.z) > edge and self.sliding:
+            return 0.0
+        room = math.copysign(edge, velocity) - self.z
+        elastic = min(max(room / velocity, 0.0), dt) if velocity != 0.0 else dt
+        most = HEADROOM * max(m.static_friction, m.coulomb_friction) / m.bristle_stiffness
+        self.z = min(max(self.z + velocity * elastic + correction * dt, -most), most)
+        return elastic

@@ -1,0 +1,87 @@
+"""What the laws that know the machine share: estimates of motion and force, and rest where the piston should be."""
+
+from abc import abstractmethod
+from typing import NamedTuple
+
+from pneumo_ros.control.estimator import StateEstimator
+from pneumo_ros.control.friction import FrictionObserver
+from pneumo_ros.control.gain import Gain
+from pneumo_ros.control.law import Law
+from pneumo_ros.control.measurement import Measurement
+from pneumo_ros.control.pneumatics import Chambers, chambers
+from pneumo_ros.control.setpoint import Setpoint
+from pneumo_ros.control.spool import SpoolLead
+from pneumo_ros.control.stops import Stops
+
+REOPEN = 1.5  # times the tolerance
+REST = 0.02  # s without motion after which the piston counts as resting
+
+
+class AxisState(NamedTuple):
+    """The axis as estimated: position [m], velocity [m/s], acceleration [m/s2], and its chambers."""
+
+    position: float
+    velocity: float
+    acceleration: float
+    air: Chambers
+
+
+class ModelLaw(Law):
+    """A law that inverts the machine. Without pressures it keeps the valve closed.
+
+    Once the piston rests within `tolerance` of where it is to stay, the valve is closed until the error is half as much
+    again: whatever a law does to a piston that sticks would end in another slip. After some stops at wrong places the
+    tolerance doubles with each further one, until the setpoint moves on: no law hunts for ever.
+    """
+
+    reads_pressures = True
+    bandwidth = Gain(300.0, "rad/s", "of the estimate of velocity and acceleration", 10.0, 3000.0)
+    tolerance = Gain(2e-4, "m", "error that is left alone at rest", 0.0, 0.1)
+    rest_span = Gain(5e-5, "m", "motion that counts as none: noise, and bristles that ring", 0.0, 0.01)
+
+    def forget(self) -> None:
+        """Forget the estimates."""
+        self.estimator, self.friction = StateEstimator(self.bandwidth), FrictionObserver(self.machine)
+        self.resting, self.stops, self._spool = False, Stops(), SpoolLead()
+
+    def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
+        """Voltage [V]; see `Law.respond`."""
+        if measurement.pressure_a is None or measurement.pressure_b is None:
+            return 0.0
+        state = self._estimate(measurement, measurement.pressure_a, measurement.pressure_b, dt)
+        self.friction.machine = self.machine
+        self.stops.watch(setpoint.position, state.position, self.rest_span, self.resting, dt)
+        self.resting = self._may_rest(setpoint, state)
+        if self.resting:
+            self.pause(state)
+        wanted = 0.0 if self.resting else self.valve.voltage(self.valve.clip(self.opening(setpoint, state, dt)))
+        return self._spool.voltage(self.machine, wanted, self.valve.max_voltage, dt)
+
+    @abstractmethod
+    def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
+        """Opening [V] of the valve."""
+
+    @abstractmethod
+    def pause(self, state: AxisState) -> None:
+        """The valve stays closed for a sample, because the piston rests where it should."""
+
+    def _estimate(self, measurement: Measurement, p_a: float, p_b: float, dt: float) -> AxisState:
+        air = chambers(self.machine, measurement.position, p_a, p_b)
+        self.estimator.bandwidth = self.bandwidth
+        self.estimator.update(measurement.position, air.force / self.machine.moving_mass, dt)
+        seen = self.estimator
+        velocity = seen.velocity if measurement.velocity is None else measurement.velocity
+        return AxisState(seen.position, velocity, seen.acceleration, air)
+
+    def _may_rest(self, setpoint: Setpoint, state: AxisState) -> bool:
+        error = abs(setpoint.position - state.position)
+        if setpoint.velocity != 0.0:
+            return False
+        if self.resting:
+            return error <= REOPEN * self.patience
+        return error <= self.patience and self.stops.still >= REST
+
+    @property
+    def patience(self) -> float:
+        """The tolerance [m], as far as stops at wrong places have widened it."""
+        return self.tolerance * self.stops.patience

@@ -1,0 +1,122 @@
+"""Gains found by simulation: one procedure for every law."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneumo_ros.control.closed_loop import SteppedPlant, closed_loop
+from pneumo_ros.control.figures import arrivals, tracking
+from pneumo_ros.control.law import Law
+from pneumo_ros.control.sensors import NoisySensors
+from pneumo_ros.control.setpoint import Reference
+from pneumo_ros.errors import NumericalError
+
+EXPLORED, SPREAD = 0.5, 5.0  # share of the evaluations that are drawn, within so many times of where they begin
+FACTORS = (1.5, 1.2)  # by which a gain is changed afterwards, the coarse one first
+WORST = 100.0  # cost of a run that fails
+NOISE_SEED, DRAW_SEED = 1, 0
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A motion on a plant: a reference followed from `begin` [s] on, or moves that are each held for `hold` [s]."""
+
+    plant: Callable[[], SteppedPlant]
+    reference: Reference
+    seconds: float
+    begin: float = 0.0
+    hold: float | None = None
+    unit: float = 1e-3  # m, rms error that costs 1; of a move, the tolerance within which it must end
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Costs beside the error: of the valve's `activity` [s/V], and of a second until a move has `settled` [1/s]."""
+
+    activity: float = 2e-4
+    settled: float = 0.2
+
+
+def cost(law: Law, trials: Sequence[Trial], weights: Weights | None = None) -> float:
+    """Mean over `trials` of what `law` makes of them; smaller is better, and the same law costs the same."""
+    return sum(_cost_of(law, trial, weights or Weights()) for trial in trials) / len(trials)
+
+
+def _cost_of(law: Law, trial: Trial, weights: Weights) -> float:
+    law.reset()
+    plant = trial.plant()
+    try:
+        record = closed_loop(
+            plant, law, trial.reference, round(trial.seconds / plant.sample_time), NoisySensors(seed=NOISE_SEED)
+        )
+    except NumericalError:
+        return WORST
+    seen = tracking(record, trial.begin)
+    if trial.hold is None:
+        return min(seen.rms / trial.unit + weights.activity * seen.activity, WORST)
+    ends = arrivals(record, trial.hold, trial.unit)
+    errors = sum(min(end.error / trial.unit, 10.0) + weights.settled * end.settling for end in ends) / len(ends)
+    return min(errors + weights.activity * seen.activity, WORST)
+
+
+class Search:
+    """First a law's `tuned` gains are drawn at random, log-uniformly around where they begin. Then, from the best,
+    each in turn is multiplied and divided by a factor, and kept where that pays; when none does, the factor becomes
+    smaller: the pattern search of R. Hooke and T. A. Jeeves, J. ACM 8 (1961), without its leaps.
+    """
+
+    def __init__(
+        self,
+        make: Callable[[Mapping[str, float]], Law],
+        trials: Sequence[Trial],
+        evaluations: int = 60,
+        told: Callable[[int, float], object] = lambda count, least: None,
+    ) -> None:
+        """`make` turns gains into the law; `told` hears the number of evaluations so far and the least cost."""
+        self._make, self._trials, self._told = make, trials, told
+        self.evaluations, self.count = evaluations, 0
+        law = make({})
+        self._kind, self.gains = type(law), {name: float(getattr(law, name)) for name in law.tuned}
+        self.least = self.first = self._cost(self.gains)
+
+    def run(self) -> dict[str, float]:
+        """The gains of least cost, once nothing pays any more or all evaluations are spent."""
+        self._explore()
+        for factor in FACTORS:
+            while self.count < self.evaluations and self._round(factor):
+                pass
+        return self.gains
+
+    def _explore(self) -> None:
+        begin, random = dict(self.gains), np.random.default_rng(DRAW_SEED)
+        while self.count < EXPLORED * self.evaluations:
+            factors = SPREAD ** random.uniform(-1.0, 1.0, len(begin))
+            self._take({name: self._rounded(name, f * begin[name]) for name, f in zip(begin, factors, strict=True)})
+
+    def _round(self, factor: float) -> bool:
+        paid = [self._try(name, factor) or self._try(name, 1.0 / factor) for name in self._kind.tuned]
+        return any(paid)
+
+    def _try(self, name: str, factor: float) -> bool:
+        value = self._rounded(name, self.gains[name] * factor)
+        if value == self.gains[name] or self.count >= self.evaluations:
+            return False
+        return self._take({**self.gains, name: value})
+
+    def _rounded(self, name: str, value: float) -> float:
+        """A gain within its range, to three digits: a control file is read by people."""
+        gain = self._kind.gains[name]
+        return float(f"{min(max(value, gain.low), gain.high):.3g}")
+
+    def _take(self, candidate: dict[str, float]) -> bool:
+        """Keep the candidate if it is the best so far."""
+        found = self._cost(candidate)
+        if found < self.least:
+            self.gains, self.least = candidate, found
+        self._told(self.count, self.least)
+        return self.gains is candidate
+
+    def _cost(self, gains: Mapping[str, float]) -> float:
+        self.count += 1
+        return cost(self._make(gains), self._trials)

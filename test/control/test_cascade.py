@@ -1,0 +1,66 @@
+"""The cascade on the plant: what it is for, and what each of its parts is worth."""
+
+import numpy as np
+import pytest
+from control.following import AXIS, LOADED, STICKY, follow, law_for
+
+from pneumo_ros.control.figures import arrivals, tracking
+from pneumo_ros.control.reference import moves, sine
+
+SINE = sine(0.3, 0.05)
+MOVES = moves([0.0, 0.06, 0.0, -0.06], 5.0, 1.0)
+
+
+def rms(name: str, plant=AXIS, known=AXIS, seconds: float = 25.0, **gains: float) -> float:
+    """Along the sine [m], after 5 s."""
+    return tracking(follow(law_for(name, known, **gains), SINE, seconds, plant), 5.0).rms
+
+
+def test_the_sine_is_followed_three_times_better_than_by_pid() -> None:
+    cascade = rms("cascade")
+    assert cascade < 1.0e-3
+    assert cascade < rms("pid") / 3.0
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("plant", [AXIS, STICKY, LOADED], ids=["axis", "sticky", "loaded"])
+def test_moves_end_within_the_tolerance_and_the_piston_stays(plant, seed: int) -> None:
+    ends = arrivals(follow(law_for("cascade"), MOVES, 20.0, plant, seed), 5.0)
+    assert max(end.error for end in ends) < 3e-4
+    assert max(end.motion for end in ends) < 5e-5
+
+
+def test_raw_steps_arrive_too_and_far_ones_brake_in_time() -> None:
+    record = follow(law_for("cascade"), moves([0.0, 0.06, -0.5], 8.0, 1e-3), 24.0)
+    ends = arrivals(record, 8.0)
+    assert max(end.error for end in ends) < 3e-4
+    assert record.states[:, 0].min() > -0.5 - 0.015  # a detour at most
+
+
+def test_the_friction_observer_is_worth_it() -> None:
+    """Told that there is no friction, the rest of the cascade cannot follow."""
+    bare = AXIS.with_parameters({"lugre_friction.static_friction": 0.0, "lugre_friction.coulomb_friction": 1e-3})
+    assert rms("cascade", known=bare, learning=0.0) > 3.0 * rms("cascade")
+
+
+def test_it_learns_friction_and_load_that_the_machine_file_does_not_know() -> None:
+    assert rms("cascade", LOADED, learning=0.0) > 2.0 * rms("cascade", LOADED)
+    assert rms("cascade", STICKY) < 1.0e-3
+
+
+def test_a_better_machine_file_tracks_better() -> None:
+    assert rms("cascade", LOADED, known=LOADED) < 0.8 * rms("cascade", LOADED)
+
+
+def test_no_hunting_even_where_it_cannot_get_there() -> None:
+    """A tolerance below what sensors and stiction allow: it tries some times, then it rests."""
+    record = follow(law_for("cascade", tolerance=1e-6), moves([0.0, 0.06], 30.0, 1.0), 60.0)
+    assert np.ptp(record.states[-10_000:, 0]) < 5e-5
+    assert np.abs(record.states[-1, 0] - 0.06) < 1e-3
+
+
+def test_after_an_end_stop_it_comes_back() -> None:
+    """What the impact taught the friction observer must not hold it there."""
+    record = follow(law_for("cascade"), moves([0.9, 1.3, 0.9], 6.0, 0.5), 18.0)
+    assert np.abs(record.states[9000:12000, 0]).max() > 0.99
+    assert record.states[-1, 0] == pytest.approx(0.9, abs=1e-3)
