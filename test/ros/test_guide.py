@@ -3,34 +3,12 @@
 import math
 
 import pytest
+from ros.guided import TICK, Run
 
-from pneumo_ros.control import Machine, Pid, Setpoint, ValveInverse
+from pneumo_ros.control import Setpoint
 from pneumo_ros.control.motion import Waypoint
 from pneumo_ros.errors import UsageError
 from pneumo_ros.ros.controller.guide import Mode
-from pneumo_ros.ros.controller.loop import Loop
-
-TICK = 1_000_000  # ns
-
-
-class Run:
-    """A loop and its clock; `go` sends measurements of a piston that stands at `position`."""
-
-    def __init__(self) -> None:
-        self.loop, self.stamp, self.position = Loop(Pid(valve=ValveInverse(), machine=Machine()), 0.1), 10**18, 0.0
-        self.guide = self.loop.guide
-        self.guide.motion.following_error = 10.0
-        self.go()
-
-    def go(self, ticks: int = 1, follow: bool = False) -> float | None:
-        """The last voltage; the piston follows its setpoint exactly if wanted."""
-        voltage = None
-        for _ in range(ticks):
-            self.stamp += TICK
-            voltage = self.loop.measure(self.stamp, self.position, None)
-            if follow and self.loop.wanted is not None:
-                self.position = self.loop.wanted.position
-        return voltage
 
 
 def moving() -> Run:
@@ -55,6 +33,21 @@ def test_stop_closes_the_valve_until_resume_and_the_piston_stays_there() -> None
     run.guide.aim(0.1, None, run.loop.time)
     run.go(5000, follow=True)
     assert run.position == 0.1
+
+
+def test_whatever_ends_the_motion_ends_a_trajectory() -> None:
+    for end in (
+        lambda run: run.guide.stop(),
+        lambda run: run.guide.hold(run.loop.time),
+        lambda run: run.guide.halt(0.0),
+    ):
+        run = Run()
+        trajectory, _ = run.guide.follow([Waypoint(2.0, 0.1, 0.0)], 0.0, run.loop.time)
+        run.go(100, follow=True)
+        assert run.guide.motion.follows(trajectory)
+        end(run)
+        assert not run.guide.motion.follows(trajectory)
+        assert run.guide.motion.reason
 
 
 def test_hold_brakes_and_takes_no_reference() -> None:

@@ -13,7 +13,6 @@ from ros.axis_probe import AxisProbe
 from ros.processes import Running, node, running
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
-from std_msgs.msg import Float64
 
 PLACE = "safety"
 RATE = 200.0  # Hz
@@ -176,10 +175,11 @@ def test_clocks_that_jump_back_and_forth(tmp_path: Path) -> None:
             return [message.data for message in one.heard["valve/command"][have:]]
 
         play(100.0, 0.1)
-        one.publisher(Float64, "position/reference").publish(Float64(data=0.3))
+        for _ in range(3):  # best effort may lose one
+            one.aim(0.3)
         for begin in (100.1, 5.0, 1e6, 50.0):
             commands = play(begin, 1.0)
-            assert max(commands) > 0.78
+            assert max(commands) > 0.78, process.said
             assert all(0.0 <= volts <= 10.0 for volts in commands)
         for tick in range(40):  # the clock goes on, nothing is measured
             now = Clock()

@@ -35,6 +35,7 @@ class Guide:
         self.supply = Supply()
         self.built_in: tuple[Reference, bool] | None = None  # a reference of its own, and whether it jumps
         self.position: float | None = None
+        self._time = 0.0  # of the last measurement
         self._early: tuple[float, float | None] | None = None  # what was asked for before the first measurement
         self._vent: Vent | None = None
 
@@ -47,7 +48,7 @@ class Guide:
 
     def wanted(self, time: float, position: float) -> Setpoint | None:
         """The setpoint, None if there is nothing to follow."""
-        self.position = position
+        self.position, self._time = position, time
         if self._early is not None:
             early, self._early = self._early, None
             self.motion.aim(*early, time, position)
@@ -126,20 +127,26 @@ class Guide:
             self.motion.brake(time, self.position, "asked to end there")
 
     def stop(self) -> None:
-        """Close the valve at once."""
+        """Close the valve at once; a trajectory is given up."""
         self.mode, self._vent, self._early = Mode.STOPPED, None, None
+        self._give_up("the valve was closed")
 
     def vent(self, time: float) -> None:
         """Empty both chambers, which needs a supply that is shut off: else the piston would be driven."""
         atmosphere = self.law.machine.atmospheric_pressure
         self.supply.require_shut_off(atmosphere, self.vent_unseen)
         self.mode, self._vent = Mode.VENTING, Vent(time, atmosphere, self.law.valve.max_voltage)
+        self._give_up("the chambers are vented")
 
     def resume(self, time: float) -> None:
         """Take references again, from where the piston is."""
         if self.mode in (Mode.STOPPED, Mode.VENTING) and self.position is not None and self.motion.asked:
             self._settle(time, "")
         self.mode, self._vent = Mode.FOLLOWING, None
+
+    def _give_up(self, reason: str) -> None:
+        if self.position is not None and self.motion.asked:
+            self.motion.rest(self._time, self.position, reason)
 
     def _settle(self, time: float, reason: str) -> None:
         """After the valve was closed or vented: the piston stays where it is by now."""
