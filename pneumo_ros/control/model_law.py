@@ -1,5 +1,6 @@
 """What the laws that know the machine share: estimates of motion and force, and rest where the piston should be."""
 
+import math
 from abc import abstractmethod
 from typing import NamedTuple
 
@@ -27,7 +28,7 @@ class AxisState(NamedTuple):
 
 
 class ModelLaw(Law):
-    """A law that inverts the machine. Without pressures it keeps the valve closed.
+    """A law that inverts the machine. Without pressures, or with such as are no numbers, it closes the valve.
 
     Once the piston rests within `tolerance` of where it is to stay, the valve is closed until the error is half as much
     again: whatever a law does to a piston that sticks would end in another slip. After some stops at wrong places the
@@ -46,9 +47,10 @@ class ModelLaw(Law):
 
     def respond(self, setpoint: Setpoint, measurement: Measurement, dt: float) -> float:
         """Voltage [V]; see `Law.respond`."""
-        if measurement.pressure_a is None or measurement.pressure_b is None:
+        p_a, p_b = measurement.pressure_a, measurement.pressure_b
+        if p_a is None or p_b is None or not math.isfinite(p_a + p_b):
             return 0.0
-        state = self._estimate(measurement, measurement.pressure_a, measurement.pressure_b, dt)
+        state = self._estimate(measurement, p_a, p_b, dt)
         self.friction.machine = self.machine
         self.stops.watch(setpoint.position, state.position, self.rest_span, self.resting, dt)
         self.resting = self._may_rest(setpoint, state)

@@ -83,6 +83,9 @@ def test_what_is_tuned_are_gains(kind: type[Law]) -> None:
 def test_without_pressures_the_valve_stays_closed(kind: type[Law]) -> None:
     law = kind()
     assert [law.step(Setpoint(0.3), Measurement(1e-3 * k, 0.0)) for k in range(20)] == [0.0] * 20
+    assert law.step(Setpoint(0.3), Measurement(0.1, 0.0, None, 3e5, math.nan)) == 0.0
+    assert law.step(Setpoint(0.3), Measurement(0.2, 0.0, None, math.inf, 3e5)) == 0.0
+    assert law.step(Setpoint(0.3), Measurement(0.201, 0.0, None, 3e5, 3e5)) > 0.5  # and forgets it at once
 
 
 WORST = [
