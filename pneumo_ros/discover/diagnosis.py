@@ -118,7 +118,7 @@ def noise_levels(comparison: Comparison) -> dict[str, float]:
 def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:
     assert step.added is not None
     name = step.added.name
-    values = {}
+    std, values = std | step.added.std, {}
     for key, parameter in model.library.find(name).parameters.items():
         dotted = f"{name}.{key}"
         values[key] = Value(model[dotted], std.get(dotted, float("inf")), parameter.unit)

@@ -140,7 +140,7 @@ class Search:
         train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
         if max(np.median(train), (usual := float(np.median(held)))) < POOR:
             return model, None
-        tried = try_candidates(alone, found, blind(screened, alone), known)
+        tried = try_candidates(alone, found, blind(screened, alone), known, held)
         first = model.effects == self.start.effects
         trials = [as_trial(c, missing(alone)[c.name], train, held, first) for c in tried]
         good = [t for t in trials if not t.objections]

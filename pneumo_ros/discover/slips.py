@@ -15,7 +15,7 @@ from pneumo_ros.discover.coordinates import Coordinate
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical, moves
 from pneumo_ros.discover.trial import Trial
-from pneumo_ros.errors import PneumoError
+from pneumo_ros.identify.estimates import Refit
 from pneumo_ros.identify.problem import TAIL
 from pneumo_ros.identify.refit import refit_segments
 from pneumo_ros.identify.robust import huber_loss
@@ -29,14 +29,16 @@ Rows = NDArray[np.int64]
 
 FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
 POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
-BLIND = 10.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
+BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
 SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 FEWEST = 12  # events
-TRIED = 3  # candidates, those the equations see least
+TRIED = 3  # candidates that are fitted, of all that begin well
+ENOUGH = 0.9  # share of the error beyond the noise's
+EVERY = 3  # of the events one is enough to begin by
 FEW = 3  # parameters: the events are too few to fit more
 SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
-_SIZES = (0.3, 1.0, 2.5)
+_SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
 
 
 @dataclass(frozen=True)
@@ -105,50 +107,70 @@ class Slipping:
     model: Model
     train: Array
     held: Array
+    std: dict[str, float]  # of its parameters
 
 
-def try_candidates(alone: Model, found: Slips, names: Sequence[str], known: dict[str, float]) -> list[Slipping]:
-    """Each named effect added to the mechanics and fitted to the training events; best held-out median first."""
+def try_candidates(
+    alone: Model, found: Slips, names: Sequence[str], known: dict[str, float], held: Array
+) -> list[Slipping]:
+    """Those of the named effects that look best, fitted to the training events; best held-out median first.
+
+    `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
+    """
+    begin = [(*_begin(alone, found, name), name) for name in names]
     result = []
-    for name in names:
-        fitted = _fit(alone, found, name, missing(alone)[name], known)
-        if fitted is not None:
-            result.append(
-                Slipping(name, fitted, errors(fitted, found.train(fitted)), errors(fitted, found.held(fitted)))
-            )
+    for _, model, name in sorted(begin, key=lambda one: one[0])[:TRIED]:
+        refit = _fit(alone, found, model, missing(alone)[name], known)
+        fitted, std = refit.model, {n: e.std for n, e in refit.estimates.items() if n.startswith(f"{name}.")}
+        train, after = (errors(fitted, events(fitted)) for events in (found.train, found.held))
+        result.append(Slipping(name, fitted, train, after, std))
+        if share_removed(held, result[-1].held) > ENOUGH:
+            break
     return sorted(result, key=lambda s: float(np.median(s.train) + np.median(s.held)))
 
 
-def _fit(
-    alone: Model, found: Slips, name: str, effect: tuple[Coordinate, ...], known: dict[str, float]
-) -> Model | None:
-    options = []
-    for share in _SIZES:
-        values = {
-            c.name: c.value(-np.log(share) if c.logarithmic and c.is_size else share if c.is_size else 0.0)
-            for c in effect
-        }
-        try:
-            model = alone.with_effects([*alone.effects, name], values)
-        except PneumoError:
-            return None
-        few = found.train(model).pick(np.arange(0, len(found.train_rows), 3))
-        options.append((float(np.median(errors(model, few))), model))
-    model = min(options, key=lambda option: option[0])[1]
+def _begin(alone: Model, found: Slips, name: str) -> tuple[float, Model]:
+    """Where the fit of an effect begins, the best of some sizes, then of some shapes; before it, its median error."""
+    effect = missing(alone)[name]
+    some = np.arange(0, len(found.train_rows), EVERY)
+
+    def tried(values: dict[str, float]) -> tuple[float, Model]:
+        model = alone.with_effects([*alone.effects, name], values)
+        return float(np.median(errors(model, found.train(model).pick(some)))), model
+
+    options = [tried(_values(effect, share)) for share in _SIZES]
+    shapes = [c for c in effect if c.logarithmic and not c.is_size]
+    for c in shapes:
+        best = min(options, key=lambda option: option[0])[1]
+        own = {k.name: best[k.name] for k in effect}
+        options += [tried(own | {c.name: c.value(np.log(factor))}) for factor in _FACTORS]
+    return min(options, key=lambda option: option[0])
+
+
+def _values(effect: tuple[Coordinate, ...], share: float) -> dict[str, float]:
+    """Parameters of an effect of that share of its usual size, in its usual shape."""
+    size = {True: -float(np.log(share)), False: share}  # whether what grows is the inverse of the parameter
+    return {c.name: c.value(size[c.logarithmic] if c.is_size else 0.0) for c in effect}
+
+
+def _fit(alone: Model, found: Slips, begin: Model, effect: tuple[Coordinate, ...], known: dict[str, float]) -> Refit:
     prior = _friction_priors(alone, known)
-    prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(model[c.name])) for c in effect}
-    return refit_segments(model, found.train(model), list(prior), prior).model
+    prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
+    return refit_segments(begin, found.train(begin), list(prior), prior)
 
 
 def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
-    """Effects of the mechanics about which the equations along the motion say next to nothing."""
-    builds = missing(alone)
+    """Effects of the mechanics about which the equations along the motion say little, or which have a state of theirs.
+
+    Windows of the equations average over what rings or lags faster than they are long.
+    """
+    builds, library = missing(alone), alone.library
     seen: dict[str, float] = {}
     for h in screened:
         spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
         seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
-    found = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW and seen[n] < BLIND]
-    return sorted(found, key=lambda name: seen[name])[:TRIED]
+    few = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW]
+    return [n for n in few if seen[n] < BLIND or library.find(n).states]
 
 
 def share_removed(before: Array, after: Array) -> float:
@@ -174,5 +196,5 @@ def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, bas
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
     return Trial(
         h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share, first, 0.0,
-        float(np.median(base_train) - np.median(c.train)), refused=enough,
+        float(np.median(base_train) - np.median(c.train)), refused=enough, std=c.std,
     )  # fmt: skip

@@ -34,6 +34,7 @@ MATERIAL = 0.1  # of the usual size
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
 TIED = 2.5  # deviations by which a rival must be worse to be told apart
+PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
 SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
 DECOYS = 12
 SLOW = 10.0
@@ -59,6 +60,7 @@ class Trial:
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
     refused: str = ""  # why it was taken back after it had been added
+    std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
 
     @property
     def name(self) -> str:
@@ -84,7 +86,7 @@ class Trial:
         h, found, most = self.hypothesis, list[str](), max(self.gain.values(), default=0.0)
         if h.t < T_LEAST:
             found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
-        elif h.t < 1.5 * self.decoy:
+        elif h.t < 1.5 * self.decoy and self.share < PLAIN:
             found.append(f"t is {h.t:.1f}, and its trace shifted in time reaches {self.decoy:.1f}")
         if most < GAIN_LEAST:
             found.append(f"removes {100.0 * most:.1f} % on held-out runs")
