@@ -18,9 +18,9 @@ HEADS = {"given": "as given", "before": "refitted", "after": "with it", "noise":
 def adding_dict(found: "Adding") -> dict[str, Any]:
     """Errors are over windows of one second; `held_out` says whether on runs that took no part in the fit."""
     from pneumo_ros.diagnose.moved import estimates_dict
-    from pneumo_ros.discover.diagnosis import noise_levels, signal_errors, window_error
+    from pneumo_ros.discover.diagnosis import noise_levels, signal_errors
 
-    before, after = window_error(found.before), window_error(found.after)
+    given, before, after = found.errors
     return {
         "schema_version": 1,
         "model": found.model.name,
@@ -33,7 +33,7 @@ def adding_dict(found: "Adding") -> dict[str, Any]:
         "judged": list(found.judged),
         "horizon_s": found.after.horizon,
         "course": [
-            {"model": "as given", "error": window_error(found.given)},
+            {"model": "as given", "error": given},
             {"model": "refitted", "error": before},
             {"model": f"+ {', '.join(found.effects)}", "error": after},
         ],

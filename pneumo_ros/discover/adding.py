@@ -14,13 +14,13 @@ from pneumo_ros.discover.coordinates import coordinates, starts
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.polishing import Progress, polish
+from pneumo_ros.discover.prediction import HORIZON, typical_error, windowed
 from pneumo_ros.discover.ranking import refine
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.refit import Estimate, default_free
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 
-HORIZON = 1.0  # s
 ROUGHLY = 40  # enough for the model without the effects, whose fit is slow and is not kept
 
 
@@ -35,6 +35,7 @@ class Adding:
     before: Comparison = field(repr=False)
     after: Comparison = field(repr=False)
     given: Comparison = field(repr=False)  # the model as it was given
+    errors: tuple[float, float, float]  # typical error over the noise floor: as given, refitted, with the effects
     train: tuple[str, ...] = ()
     judged: tuple[str, ...] = ()
 
@@ -75,13 +76,14 @@ def add(
         larger = _with(fitter, larger, name)
     base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
     found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
-    judged, compared = held or train, []
+    judged, compared, errors = held or train, list[Comparison](), list[float]()
     for k, one in enumerate((model, base, found.model)):
         tell(0.85 + 0.05 * k, "predicting the recordings")
         compared.append(compare(one, judged, HORIZON))
+        errors.append(typical_error(windowed(one, judged)))
     return Adding(
         tuple(effects), base, found.model, found.estimates, compared[1], compared[2], compared[0],
-        tuple(run.name for run in train), tuple(run.name for run in judged),
+        (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged),
     )  # fmt: skip
 
 

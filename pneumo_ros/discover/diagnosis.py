@@ -6,19 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
-from pneumo_ros.diagnose.verdicts import root_mean_square
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
+from pneumo_ros.discover.prediction import HORIZON, typical_error
 from pneumo_ros.discover.search import Found, Progress, Search, Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import UsageError
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
-from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-HORIZON = 1.0  # s
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
 MATERIAL_FORCE = 0.01  # of the driving force: less is texture that no model has
 REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
@@ -49,11 +46,9 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     course, comparisons = [], {}
     for k, model in enumerate(models):
         tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
+        course.append((_label(models, k), typical_error(search.predicted(model))))
         if k in (1, len(models) - 1):
             comparisons[k] = compare(model, held, HORIZON)
-            course.append((_label(models, k), window_error(comparisons[k])))
-        else:
-            course.append((_label(models, k), predicted_error(model, held)))
     values = search.fitter.deviations(found.model)
     added = tuple(
         _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
@@ -86,21 +81,6 @@ def _label(models: Sequence[Model], k: int) -> str:
     if k < 2:
         return ("as given", "refitted")[k]
     return "+ " + ", ".join(e for e in models[k].effects if e not in models[k - 1].effects)
-
-
-def window_error(comparison: Comparison) -> float:
-    """Root mean square over signals and runs of window error over noise: 1 where only noise is left."""
-    ratios = [error.ratio for run in comparison.runs for error in run.error.values()]
-    return float(np.sqrt(np.mean(np.square(ratios))))
-
-
-def predicted_error(model: Model, runs: Sequence[Run]) -> float:
-    """The same for a model whose comparison is not wanted."""
-    ratios = []
-    for run in runs:
-        noise = run_noise(run)
-        ratios += [root_mean_square(e) / noise[n] for n, e in predict(model, run, HORIZON).errors.items()]
-    return float(np.sqrt(np.mean(np.square(ratios))))
 
 
 def signal_errors(comparison: Comparison) -> dict[str, float]:

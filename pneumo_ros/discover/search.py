@@ -16,13 +16,12 @@ from pneumo_ros.discover.hypothesis import (
     missing,
 )
 from pneumo_ros.discover.polishing import polish
+from pneumo_ros.discover.prediction import pays, windowed
 from pneumo_ros.discover.ranking import FINALISTS, SHORTLIST, STRAINED, held_out, refine, screen, shortlist, unaided
 from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
 from pneumo_ros.discover.strain import followed, strain
 from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals, simplest
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
-from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -31,11 +30,8 @@ Progress = Callable[[float, str], None]
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
-HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
 EXPLAINED = 0.8  # share of what noise does not explain in an equation
-BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 MOST = 4  # effects added
-UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
 
 @dataclass(frozen=True)
@@ -69,6 +65,7 @@ class Search:
         self.progress = progress or (lambda share, text: None)
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
+        self._predicted: list[tuple[Model, dict[str, float]]] = []
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
     def run(self) -> Found:
@@ -76,7 +73,7 @@ class Search:
         self.progress(0.05, "refitting what the model has")
         base = self.polish(self.fitter.refit(self.start))
         model, steps = base, list[Step]()
-        before, banned = windowed(base, self.held.runs), dict[str, str]()
+        before, banned = self.predicted(base), dict[str, str]()
         try:
             screened: list[Hypothesis] = []
             while len(steps) <= MOST + len(banned):
@@ -88,7 +85,7 @@ class Search:
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                 new = self.polish(self.fitter.refit(self.fitter.extended(model, step.added.hypothesis)))
-                after = windowed(new, self.held.runs)
+                after = self.predicted(new)
                 if not self.beyond_doubt(step.added) and not pays(before, after):
                     banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
                     continue
@@ -96,7 +93,7 @@ class Search:
                 model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
             longer, last = self.slip_round(model, screened)
-            if last is not None and last.added is not None and pays(before, windowed(longer, self.held.runs)):
+            if last is not None and last.added is not None and pays(before, self.predicted(longer)):
                 steps[-1:] = [last, replace(steps[-1], model=longer)]
                 model = longer
             base, model = self.settled(base), self.settled(model)
@@ -104,6 +101,14 @@ class Search:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
         return Found(base, model, tuple(steps))
+
+    def predicted(self, model: Model) -> dict[str, float]:
+        """`windowed` of the held-out runs; what was asked for before is kept."""
+        for one, known in self._predicted:
+            if one is model:
+                return known
+        self._predicted.append((model, windowed(model, self.held.runs)))
+        return self._predicted[-1][1]
 
     @staticmethod
     def beyond_doubt(trial: Trial) -> bool:
@@ -201,22 +206,6 @@ class Search:
                 left -= float(e.runs[i].time[-1])
         part, rows = e.only(runs)
         return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
-
-
-def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
-    """By signal, the usual error over noise in windows of 1 s: the geometric mean; no single breakaway decides it."""
-    logs: dict[str, list[Array]] = {}
-    for run in runs:
-        noise = run_noise(run)
-        for name, error in predict(model, run, HORIZON).errors.items():
-            size = np.sqrt(np.nanmean(np.minimum(np.abs(error / noise[name]), FARTHEST) ** 2, axis=1))
-            logs.setdefault(name, []).append(np.log(np.maximum(size, 1e-3)))
-    return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}
-
-
-def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether predictions of some signal got better by a twentieth and none worse by a tenth."""
-    return any(after[n] <= BETTER * before[n] for n in before) and all(after[n] <= WORSE * before[n] for n in before)
 
 
 def with_values_of(model: Model, other: Model) -> Model:

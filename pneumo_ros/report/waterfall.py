@@ -23,9 +23,9 @@ def waterfall_section(outcome: "Outcome") -> Section:
     """The chart, and below it each signal in its unit."""
     horizon = outcome.after.horizon
     text = (
-        f"Each held-out recording is predicted over windows of {horizon:g} s that start from an estimated state; the "
-        "root mean square of the error over all signals and recordings, in sensor noise. None of these recordings was "
-        "fitted. 1 x is the noise floor: nothing can fall below it."
+        f"Each held-out recording is predicted over windows of {horizon:g} s that start from an estimated state. Shown "
+        "is the error of a typical window (the geometric mean, and the root mean square over the signals), in sensor "
+        "noise. None of these recordings was fitted. 1 x is the noise floor."
     )
     signals = Section("held-out-signals", "Signal by signal", _signals(outcome))
     body = tag("p", text, class_="soft")

@@ -10,7 +10,6 @@ from rig.effects import Wish, build
 
 from pneumo_ros.diagnose.compare import Comparison
 from pneumo_ros.discover.adding import Adding, add, check_addable
-from pneumo_ros.discover.diagnosis import window_error
 from pneumo_ros.discover.polishing import telling
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.run import PARTS, Run, make_run
@@ -50,9 +49,10 @@ def test_the_rigs_load_is_fitted_and_pays_on_a_run_held_out() -> None:
     assert own.determined
     assert found.held_out
     assert found.judged == ("holdout_slow",)
-    assert window_error(found.after) < 2.0
-    assert window_error(found.before) > 50.0 * window_error(found.after)
-    assert window_error(found.given) > window_error(found.after)
+    given, before, after = found.errors
+    assert after < 1.3
+    assert before > 20.0 * after
+    assert given > after
     assert isinstance(found.after, Comparison)
 
 
