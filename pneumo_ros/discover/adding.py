@@ -15,7 +15,7 @@ from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.polishing import Progress, polish
 from pneumo_ros.discover.prediction import HORIZON, typical_error, windowed
-from pneumo_ros.discover.ranking import refine
+from pneumo_ros.discover.refining import refine
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.refit import Estimate, default_free
 from pneumo_ros.identify.run import Run

@@ -7,7 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import OVERLAP, BaseFit, family_scales, huber, solve, vectors, weights
+from pneumo_ros.discover.hypothesis import (
+    OVERLAP,
+    BaseFit,
+    Hypothesis,
+    family_scales,
+    huber,
+    log_likelihood,
+    solve,
+    vectors,
+    weights,
+)
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -79,3 +89,26 @@ def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> Ba
     r, J = slopes(evidence, model, known)
     held = whole.with_parameters({n: v for n, v in model.parameters.items() if n in whole.parameters})
     return BaseFit(model, held, known.names, known.prior, offset, evidence, r, J)
+
+
+def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
+    """Base parameters' best shift beside a candidate's residual, what they leave, and its log likelihood."""
+    after, shift = here, np.zeros(len(base.names))
+    for _ in range(4):
+        scale = family_scales(base.evidence, after)
+        weight = weights(base.evidence, after, scale)
+        shift, _A, _bread = solve(base.slopes, here, weight, np.ones(len(base.names)), base.offset)
+        after = here + base.slopes @ shift
+    value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((shift + base.offset) ** 2))
+    return shift, after, value
+
+
+def unaided(base: BaseFit) -> Hypothesis:
+    """What base parameters reach without any candidate, by one linear step like the candidates': nothing is missing."""
+    shift, after, value = at_best(base, base.residual)
+    return Hypothesis("", (), np.empty(0), shift, after, value, relief=relief_of(base, shift))
+
+
+def relief_of(base: BaseFit, shift: Array) -> float:
+    """Log likelihood of the priors that base parameters regain by a shift."""
+    return 0.5 * float(np.sum(base.offset**2) - np.sum((shift + base.offset) ** 2))

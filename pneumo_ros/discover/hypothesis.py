@@ -159,3 +159,12 @@ def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, r
     np.add.at(scores, block, A * e[:, None])
     n = len(scores)
     return np.asarray(bread @ (scores.T @ scores * (n / max(n - A.shape[1], 1)) + np.diag(ridge)) @ bread)
+
+
+def wald(size: Array, covariance: Array) -> float:
+    """Student-like statistic of several sizes together: sqrt(chi2 - (n - 1)), |t| for one."""
+    if not len(size):
+        return 0.0
+    jitter = 1e-9 * np.trace(covariance) / len(size) + 1e-300
+    value = float(size @ np.linalg.solve(covariance + jitter * np.eye(len(size)), size))
+    return float(np.sqrt(max(value - (len(size) - 1), 0.0)))

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.discover.basefit import unaided
+from pneumo_ros.discover.court import put_on_trial, remaining
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import (
@@ -15,12 +17,16 @@ from pneumo_ros.discover.hypothesis import (
     huber,
     missing,
 )
+from pneumo_ros.discover.measures import excess
 from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.prediction import pays, windowed
-from pneumo_ros.discover.ranking import FINALISTS, SHORTLIST, STRAINED, held_out, refine, screen, shortlist, unaided
-from pneumo_ros.discover.slips import POOR, as_trial, blind, errors, polished, slips, try_candidates
+from pneumo_ros.discover.refining import held_out, refine
+from pneumo_ros.discover.rivals import rivals, simplest
+from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
+from pneumo_ros.discover.slip_trials import POOR, as_trial, blind, try_candidates
+from pneumo_ros.discover.slips import errors, polished, slips
 from pneumo_ros.discover.strain import followed, strain
-from pneumo_ros.discover.trial import Trial, excess, put_on_trial, remaining, rivals, simplest
+from pneumo_ros.discover.trial import Trial
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 

@@ -11,11 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.coordinates import Coordinate
-from pneumo_ros.discover.hypothesis import Hypothesis, missing
-from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical, moves
-from pneumo_ros.discover.trial import Trial
-from pneumo_ros.identify.estimates import Refit
+from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, events, mechanical
 from pneumo_ros.identify.problem import TAIL
 from pneumo_ros.identify.refit import refit_segments
 from pneumo_ros.identify.robust import huber_loss
@@ -28,17 +24,10 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
-POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
-BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
-SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 FEWEST = 12  # events
-TRIED = 3  # candidates that are fitted, of all that begin well
-ENOUGH = 0.9  # share of the error beyond the noise's
-EVERY = 3  # of the events one is enough to begin by
-FEW = 3  # parameters: the events are too few to fit more
 SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
-_SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
+FEW = 3  # parameters: the events are too few to fit more
 
 
 @dataclass(frozen=True)
@@ -82,7 +71,7 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
 
     `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise.
     """
-    prior = _friction_priors(alone, known)
+    prior = friction_priors(alone, known)
     names = list(prior)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
         if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
@@ -94,107 +83,6 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
     return new if after < before else alone
 
 
-def _friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
+def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
     names = [f"lugre_friction.{key}" for key in FREE]
     return {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
-
-
-@dataclass(frozen=True)
-class Slipping:
-    """A candidate on the events: the mechanics with it, and errors per event without and with it, both ways."""
-
-    name: str
-    model: Model
-    train: Array
-    held: Array
-    std: dict[str, float]  # of its parameters
-
-
-def try_candidates(
-    alone: Model, found: Slips, names: Sequence[str], known: dict[str, float], held: Array
-) -> list[Slipping]:
-    """Those of the named effects that look best, fitted to the training events; best held-out median first.
-
-    `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
-    """
-    begin = [(*_begin(alone, found, name), name) for name in names]
-    result = []
-    for _, model, name in sorted(begin, key=lambda one: one[0])[:TRIED]:
-        refit = _fit(alone, found, model, missing(alone)[name], known)
-        fitted, std = refit.model, {n: e.std for n, e in refit.estimates.items() if n.startswith(f"{name}.")}
-        train, after = (errors(fitted, events(fitted)) for events in (found.train, found.held))
-        result.append(Slipping(name, fitted, train, after, std))
-        if share_removed(held, result[-1].held) > ENOUGH:
-            break
-    return sorted(result, key=lambda s: float(np.median(s.train) + np.median(s.held)))
-
-
-def _begin(alone: Model, found: Slips, name: str) -> tuple[float, Model]:
-    """Where the fit of an effect begins, the best of some sizes, then of some shapes; before it, its median error."""
-    effect = missing(alone)[name]
-    some = np.arange(0, len(found.train_rows), EVERY)
-
-    def tried(values: dict[str, float]) -> tuple[float, Model]:
-        model = alone.with_effects([*alone.effects, name], values)
-        return float(np.median(errors(model, found.train(model).pick(some)))), model
-
-    options = [tried(_values(effect, share)) for share in _SIZES]
-    shapes = [c for c in effect if c.logarithmic and not c.is_size]
-    for c in shapes:
-        best = min(options, key=lambda option: option[0])[1]
-        own = {k.name: best[k.name] for k in effect}
-        options += [tried(own | {c.name: c.value(np.log(factor))}) for factor in _FACTORS]
-    return min(options, key=lambda option: option[0])
-
-
-def _values(effect: tuple[Coordinate, ...], share: float) -> dict[str, float]:
-    """Parameters of an effect of that share of its usual size, in its usual shape."""
-    size = {True: -float(np.log(share)), False: share}  # whether what grows is the inverse of the parameter
-    return {c.name: c.value(size[c.logarithmic] if c.is_size else 0.0) for c in effect}
-
-
-def _fit(alone: Model, found: Slips, begin: Model, effect: tuple[Coordinate, ...], known: dict[str, float]) -> Refit:
-    prior = _friction_priors(alone, known)
-    prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
-    return refit_segments(begin, found.train(begin), list(prior), prior)
-
-
-def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
-    """Effects of the mechanics about which the equations along the motion say little, or which have a state of theirs.
-
-    Windows of the equations average over what rings or lags faster than they are long.
-    """
-    builds, library = missing(alone), alone.library
-    seen: dict[str, float] = {}
-    for h in screened:
-        spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
-        seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
-    few = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW]
-    return [n for n in few if seen[n] < BLIND or library.find(n).states]
-
-
-def share_removed(before: Array, after: Array) -> float:
-    """Share of the median error beyond the noise's that is gone."""
-    first, second = float(np.median(before)), float(np.median(after))
-    return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
-
-
-def deviations_better(before: Array, after: Array) -> float:
-    """By how many deviations more events than half got better (sign test)."""
-    wins, count = int(np.sum(after < before)), len(before)
-    return float((wins - 0.5 * count) / (0.5 * np.sqrt(count))) if count else 0.0
-
-
-def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, base_held: Array, first: bool) -> Trial:
-    """The candidate in the form in which all candidates are judged."""
-    u = np.array([k.u(c.model[k.name]) for k in effect])
-    z_train, z_held = deviations_better(base_train, c.train), deviations_better(base_held, c.held)
-    h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=z_train)
-    sizes = [abs(x) for k, x in zip(effect, u, strict=True) if k.is_size and not k.logarithmic]
-    gain = 1.0 - float(np.median(c.held) / np.median(base_held))
-    share = share_removed(base_held, c.held)
-    enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
-    return Trial(
-        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share, first, 0.0,
-        float(np.median(base_train) - np.median(c.train)), refused=enough, std=c.std,
-    )  # fmt: skip

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
-from pneumo_ros.discover.ranking import STRAINED
+from pneumo_ros.discover.screening import STRAINED
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]

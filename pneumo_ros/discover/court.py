@@ -1,0 +1,150 @@
+"""Candidates put on trial: is a size stable, do traces shifted in time do as well, what do held-out runs gain."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import (
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    family_scales,
+    log_likelihood,
+    wald,
+    weights,
+)
+from pneumo_ros.discover.measures import (
+    advantage,
+    explained,
+    force,
+    gains,
+)
+from pneumo_ros.discover.trial import T_LEAST, Trial
+
+Array = NDArray[np.float64]
+
+TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
+DECOYS = 12
+FEW_RUNS = 3
+
+
+def put_on_trial(
+    base: BaseFit,
+    held: BaseFit,
+    hypotheses: Sequence[Hypothesis],
+    residuals: Sequence[Array],
+    nothing: Hypothesis,
+    first: bool,
+) -> list[Trial]:
+    """Trials of refined hypotheses with their held-out residuals, best score first.
+
+    All is told against `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
+    """
+    rng, found = np.random.default_rng(0), []
+    reference = nothing.likelihood + log_likelihood(held.evidence, held.residual)
+    for h, r in zip(hypotheses, residuals, strict=True):
+        found.append(
+            Trial(
+                hypothesis=replace(h, relief=h.relief - nothing.relief),
+                held=r,
+                gain=gains(held.evidence, held.residual, r),
+                z=advantage(held.evidence, held.residual, r)[1],
+                size=magnitude(h),
+                stable=stable(base, h),
+                share=explained(held.evidence, held.residual, r),
+                first=first,
+                decoy=decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
+                score=h.likelihood + log_likelihood(held.evidence, r) - reference,
+                force=force(held.evidence, held.residual, r) / (TEXTURE * held.evidence.drive),
+                lag=_lag(h, base.evidence.runs[0].sample_time),
+            )
+        )
+    return sorted(found, key=lambda trial: -trial.score)
+
+
+def magnitude(h: Hypothesis) -> float:
+    """Largest size of a hypothesis in usual ones."""
+    found = [0.0]
+    for c, u in zip(h.coordinates, h.u, strict=True):
+        if c.is_size:
+            value = c.value(float(u))
+            if c.logarithmic:
+                found.append(0.0 if value == c.neutral else c.typical / value)
+            else:
+                found.append(abs(float(u)))
+    return max(found)
+
+
+def stable(base: BaseFit, h: Hypothesis) -> bool:
+    """Whether the sizes keep their sign and half their value, whichever run is left out (linearised)."""
+    A, e, ridge = _parts(base, h)
+    p, normal = len(base.names), A.T @ A
+    sizes = [k for k, c in enumerate(h.coordinates) if c.is_size and not c.logarithmic]
+    if not sizes:
+        return True
+    u = h.u[sizes]
+    for own in _folds(base.evidence):
+        left = normal - A[own].T @ A[own] + np.diag(ridge)
+        shift = np.linalg.solve(left, A[own].T @ e[own])[p:][
+            sizes
+        ]  # the other runs' optimum: their gradient is minus it
+        if float(u @ (u + shift)) < 0.5 * float(u @ u):
+            return False
+    return True
+
+
+def _folds(evidence: Evidence) -> list[NDArray[np.bool_]]:
+    """Which residuals to leave out together: a run each; quarters in time of each, of less than three runs."""
+    if len(evidence.runs) >= FEW_RUNS:
+        return [evidence.run == k for k in range(len(evidence.runs))]
+    ends = np.array([run.time[-1] for run in evidence.runs])
+    part = np.minimum((4.0 * evidence.time / ends[evidence.run]).astype(int), 3) + 4 * evidence.run
+    return [part == k for k in range(4 * len(evidence.runs))]
+
+
+def _parts(base: BaseFit, h: Hypothesis) -> tuple[Array, Array, Array]:
+    """Weighted slopes (residuals, base + candidate), weighted residual, and ridge, at the hypothesis."""
+    w = weights(base.evidence, h.residual, family_scales(base.evidence, h.residual))
+    K = np.concatenate([base.slopes, h.slopes], axis=1)
+    ridge = np.concatenate([np.ones(len(base.names)), [1.0 / c.prior**2 for c in h.coordinates]])
+    return K * w[:, None], w * h.residual, ridge
+
+
+def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
+    """Largest t among copies of the candidate's trace shifted in time, each within its runs."""
+    evidence, p = base.evidence, len(base.names)
+    w = weights(evidence, h.residual, family_scales(evidence, h.residual))
+    B, e = base.slopes * w[:, None], w * h.residual
+    sizes = [k for k, c in enumerate(h.coordinates) if c.is_size]
+    C = h.slopes[:, sizes]
+    groups = [
+        np.flatnonzero((evidence.family == f) & (evidence.run == r))
+        for f in range(len(evidence.names))
+        for r in range(len(evidence.runs))
+    ]
+    largest = 0.0
+    for _ in range(DECOYS):
+        shifted = np.empty_like(C)
+        for rows in groups:
+            if len(rows):
+                shifted[rows] = np.roll(C[rows], int(rng.uniform(0.1, 0.9) * len(rows)), axis=0)
+        A = np.concatenate([B, shifted * w[:, None]], axis=1)
+        bread = np.linalg.inv(A.T @ A + np.diag(np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])))
+        x = -bread @ (A.T @ e)
+        cov = cluster_robust(A, e + A @ x, evidence.block, bread, np.zeros(len(x)))
+        largest = max(largest, wald(x[p:], cov[p:, p:]))
+    return largest
+
+
+def remaining(trial: Trial, first: dict[str, float], now: dict[str, float]) -> float:
+    """Share of what was left at first that is still there, in the equation where the trial helps most."""
+    name = max(trial.gain, key=lambda n: trial.gain[n] * now.get(n, 0.0))
+    return now.get(name, 0.0) / first[name] if first.get(name) else 1.0
+
+
+def _lag(h: Hypothesis, sample_time: float) -> float:
+    delays = [value for name, value in h.values.items() if name.endswith(".delay")]
+    return min(delays) / sample_time if delays else np.inf

@@ -1,0 +1,82 @@
+"""What is left in each equation, with and without a candidate, and how surely one leaves less than the other."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import (
+    OVERLAP,
+    family_scales,
+    huber,
+)
+
+Array = NDArray[np.float64]
+
+MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
+NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
+
+
+def equation_of(name: str) -> str:
+    """The equation of a family: momentum, chamber_a, chamber_b or breakaway."""
+    return name.partition(" ")[0]
+
+
+def equation_helped(gain: dict[str, float]) -> str:
+    """The equation that gains most; "" of none."""
+    return max(gain, key=lambda name: gain[name], default="")
+
+
+def force(evidence: Evidence, before: Array, after: Array) -> float:
+    """Root mean square of what changes in the momentum equation [N]; 0 without it."""
+    own = np.isin(evidence.family, [k for k, name in enumerate(evidence.names) if equation_of(name) == "momentum"])
+    change = (before - after)[own] * evidence.noise[own]
+    return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
+
+
+def mean_squares(evidence: Evidence, residual: Array) -> dict[str, float]:
+    """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's."""
+    scale = family_scales(evidence, residual)
+    found: dict[str, list[float]] = {}
+    for k, name in enumerate(evidence.names):
+        if (evidence.family == k).any():
+            found.setdefault(equation_of(name), []).append(float(scale[k] ** 2))
+    return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
+
+
+def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
+    """By equation, the share of the mean square residual that `after` lacks against `before`."""
+    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    return {name: 1.0 - second[name] / first[name] for name in first}
+
+
+def explained(evidence: Evidence, before: Array, after: Array) -> float:
+    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
+    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    noise = {name: NOISE.get(name, 1.0) for name in first}
+    return max((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+
+
+def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
+    """By equation, the mean square of the residual beyond the noise's."""
+    return {n: max(value - NOISE.get(n, 1.0), 0.0) for n, value in mean_squares(evidence, residual).items()}
+
+
+def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
+    """Loss that `better` saves against `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
+    scale = family_scales(evidence, better)[evidence.family]
+    difference = OVERLAP**2 * (huber(worse / scale) - huber(better / scale))
+    blocks = np.clip(np.bincount(evidence.block, difference), -MOST_BLOCK, MOST_BLOCK)
+    spread = float(np.sqrt(np.sum(blocks**2)))
+    return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0
+
+
+def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:
+    """The same over several bodies of evidence, (evidence, worse, better) each: deviations."""
+    total = spread = 0.0
+    for evidence, worse, better in pairs:
+        saved, z = advantage(evidence, worse, better)
+        total += saved
+        spread += (saved / z) ** 2 if z else 0.0
+    return total / np.sqrt(spread) if spread > 0.0 else 0.0
