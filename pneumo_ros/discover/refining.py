@@ -140,14 +140,14 @@ def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
     step = np.zeros(len(h.u))
     for _ in range(3):
         w = weights(base.evidence, after, family_scales(base.evidence, after))
-        x = _bounded(h, K, here, w, ridge, offset)
+        x = bounded_step(h, K, here, w, ridge, offset)
         after, step = here + K @ x, x[first:]
     logs = np.array([c.logarithmic for c in h.coordinates])
     step = np.where(logs, np.clip(step, -1.0, 1.0), np.clip(step, -3.0, 3.0))
     return np.array([c.clip(v) for c, v in zip(h.coordinates, h.u + step, strict=True)])
 
 
-def _bounded(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
+def bounded_step(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
     """The step of `solve` with the candidate's coordinates kept within their bounds, the others at their best beside.
 
     A coordinate that leaves its range is held at the end of it, and all that is free is solved anew.
