@@ -1,6 +1,8 @@
 """An effect from a user's file takes part: simulated, found missing, added by name."""
 
 import json
+import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -71,3 +73,15 @@ def test_one_that_cannot_fade_in_is_named(folder: Path, tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "magnetic_detent cannot be fitted" in done.stderr
     assert "neutral=0.0" in done.stderr
+
+
+def test_the_guide_can_be_typed(tmp_path: Path) -> None:
+    """The file of docs/own_effect.md, and the machine file that its commands make."""
+    guide = (Path(__file__).parents[2] / "docs" / "own_effect.md").read_text()
+    blocks = {kind: re.findall(f"```{kind}\n(.*?)```", guide, re.DOTALL) for kind in ("python", "sh")}
+    (tmp_path / "my_effects.py").write_text(blocks["python"][0])
+    commands = blocks["sh"][0].replace("$(python ", f"$({shlex.quote(sys.executable)} ")
+    subprocess.run(["sh", "-ec", commands], cwd=tmp_path, check=True)
+    model = load_model(tmp_path / "leaky.yaml", [tmp_path / "my_effects.py"])
+    assert model["seal_leak.conductance"] == 1.5e-7
+    assert model.effects[-1] == "seal_leak"
