@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import unaided
-from pneumo_ros.discover.court import put_on_trial, remaining
+from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import (
@@ -17,7 +17,7 @@ from pneumo_ros.discover.hypothesis import (
     huber,
     missing,
 )
-from pneumo_ros.discover.measures import excess
+from pneumo_ros.discover.measures import excess, force
 from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.prediction import pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
@@ -72,6 +72,7 @@ class Search:
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         self._predicted: list[tuple[Model, dict[str, float]]] = []
+        self.left = 0.0  # N, root mean square of what is unexplained in the momentum equation
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
     def run(self) -> Found:
@@ -133,8 +134,11 @@ class Search:
         return with_values_of(model, polished(*made, self.fitter.deviations(model), added))
 
     def settled(self, model: Model) -> Model:
-        """Recordings with too few breakaways to refit friction to: the model refitted to predict segments of them."""
-        if slips(model, self.train.runs, self.held.runs) is not None:
+        """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.
+
+        That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back.
+        """
+        if not model.force_driven and slips(model, self.train.runs, self.held.runs) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
         new = polish(self.fitter, model, self.train.runs).model
@@ -142,9 +146,12 @@ class Search:
         return new if all(after[name] <= before[name] for name in before) else model
 
     def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
-        """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one."""
+        """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
+
+        Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
+        """
         made = slips(model, self.train.runs, self.held.runs)
-        if made is None:
+        if made is None or self.left > TEXTURE * self.held.drive:
             return model, None
         alone, found = made
         known = self.fitter.deviations(model)
@@ -165,41 +172,44 @@ class Search:
     def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fitter.fits(model)
+        nothing = unaided(base)
+        held = replace(held, residual=held_out(base, held, [nothing])[0])
+        hypotheses, screened = self.candidates(base)
+        trials = self.tried(base, held, nothing, hypotheses, screened)
+        now = excess(self.held, held.residual)
+        self.first = self.first or now
+        self.left = force(self.held, held.residual, np.zeros(len(self.held)))
+        trials = [replace(t, refused=banned.get(t.name, ""), rest=remaining(t, self.first, now)) for t in trials]
+        best = simplest(base, held, [trial for trial in trials if not trial.objections])
+        others = rivals(base, held, best, trials) if best else []
+        scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
+        return Step(model, tuple(trials), best, tuple(others), scales[0], scales[1]), screened
+
+    def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
+        """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
         part = self.worst(base)
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
         short = shortlist(part, bare, promising or screened[:SHOWN], SHORTLIST)
-        tried = sorted(refine(part, short), key=lambda h: -h.likelihood)
-        tried = refine(base, shortlist(part, bare, tried, FINALISTS), iterations=2, settled=True)
-        nothing = unaided(base)
-        without = held_out(base, held, [nothing])[0]
-        held = replace(held, residual=without)
-        trials = put_on_trial(
-            base, held, tried, held_out(base, held, tried), nothing,
-            model.effects == self.start.effects,
-        )  # fmt: skip
+        fitted = sorted(refine(part, short), key=lambda h: -h.likelihood)
+        return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
+
+    def tried(
+        self,
+        base: BaseFit,
+        held: BaseFit,
+        nothing: Hypothesis,
+        hypotheses: Sequence[Hypothesis],
+        screened: Sequence[Hypothesis],
+    ) -> list[Trial]:
+        """Trials of the hypotheses, and of effects that strained base parameters may stand in for."""
+        first = base.model.effects == self.start.effects
+        trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
         if strain(base) > STRAINED:
-            relieving = followed(self.fitter, base, screened)
-            known = [trial.name for trial in trials if not trial.objections]
-            relieving = [pair for pair in relieving if pair[0].name not in known]
-            hypotheses, residuals = [h for h, _ in relieving], [r for _, r in relieving]
-            trials += put_on_trial(
-                base, held, hypotheses, residuals, nothing,
-                model.effects == self.start.effects,
-            )  # fmt: skip
-        now = excess(self.held, without)
-        self.first = self.first or now
-        trials = [
-            replace(trial, refused=banned.get(trial.name, ""), rest=remaining(trial, self.first, now))
-            for trial in trials
-        ]
-        best = simplest(base, held, [trial for trial in trials if not trial.objections])
-        others = rivals(base, held, best, trials) if best else []
-        step = Step(
-            model, tuple(trials), best, tuple(others), _scales(self.held, without),
-            _scales(self.held, best.held if best else without),
-        )  # fmt: skip
-        return step, screened
+            good = [trial.name for trial in trials if not trial.objections]
+            pairs = [pair for pair in followed(self.fitter, base, screened) if pair[0].name not in good]
+            trials += put_on_trial(base, held, [h for h, _ in pairs], [r for _, r in pairs], nothing, first)
+        return trials
 
     def worst(self, base: BaseFit) -> BaseFit:
         """The part of the training evidence where the model is worst: enough to rank by."""
