@@ -48,7 +48,7 @@ def generate_launch_description() -> LaunchDescription:
     """Simulator and controller below, ros2_control and its controllers above, which own /joint_states."""
     namespace, machine = LaunchConfiguration("namespace"), LaunchConfiguration("params")
     description = {"robot_description": ParameterValue(robot(namespace), value_type=str)}
-    controllers = PathJoinSubstitution([SHARE, "config", "ros2_control.yaml"])
+    controllers = PathJoinSubstitution([SHARE, "config", "ros2_control", "controllers.yaml"])
     simulator = Node(
         package="pneumo_ros",
         executable="simulator",
