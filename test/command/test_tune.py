@@ -8,6 +8,7 @@ import pytest
 from pneumo_ros.command.main import main
 from pneumo_ros.command.trials import begin_at, harsher, task_for, top_speed, trials_of
 from pneumo_ros.control.control_file import load_control
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 
 AXIS = load_model("axis")
@@ -35,6 +36,8 @@ def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: 
         (["--law", "pidd"], 2, "did you mean pid"),
         (["--evaluations", "0"], 2, "--evaluations is 0"),
         (["--amplitude", "nan"], 2, "--amplitude is nan"),
+        (["--amplitude", "5"], 2, "--amplitude is 5 m; the stroke of 2 m allows 0.9 m"),
+        (["--step", "1"], 2, "--step is 1 m"),
         (["--spool", "-1"], 2, "--spool is -1"),
         (["--control", "cascade", "--law", "pid"], 2, "leave one of them out"),
         (["--control", "no_such"], 3, "no_such cannot be read"),
@@ -57,6 +60,12 @@ def test_the_task_is_within_what_the_machine_can_do() -> None:
     heavy = task_for(AXIS.with_parameters({"piston.mass": 400.0}))
     assert heavy.duration > 1.2 * task.duration  # for lack of force
     assert task_for(AXIS, 0.1, 0.3, 0.02).frequency == 0.3
+
+
+def test_a_machine_that_hardly_moves_is_refused() -> None:
+    """Its sine would take days."""
+    with pytest.raises(UsageError, match="look at supply_pressure"):
+        task_for(AXIS.with_parameters({"air.supply_pressure": 1.1e5}))
 
 
 def test_the_other_machine_is_heavier_and_stickier_and_one_without_lugre_friction_is_fine() -> None:
