@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from processes import REFERENCE, cpu_seconds, nodes
 
 Array = NDArray[np.float64]
 PATIENCE = 0.1  # s
@@ -78,3 +79,27 @@ class Asking:
         self._over = True
         self._thread.join()
         self._node.destroy_node()
+
+
+def answers(seconds: float, rate: float) -> None:
+    """Print how long valve commands take, law by law, and what the controller needs for it."""
+    from pneumo_ros.ros.controller.settings import LAWS
+
+    asking = Asking(rate)
+    print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")
+    print(f"{'':34} {'p50':>9} {'p99':>9} {'largest':>9} {'unanswered':>11} {'rate':>8} {'controller':>11}")
+    for law in LAWS:
+        patient = ("-p", "measurement_timeout:=10.0")  # 0 V into a silence would be taken for an answer
+        with nodes(("controller", *REFERENCE, *patient, "-p", f"law:={law}")) as pids:
+            while not asking.ready():
+                time.sleep(0.1)
+            asking.ask(2.0)
+            before, begin = cpu_seconds(pids[0]), time.monotonic()
+            waits, lost, reached = asking.ask(seconds)
+            share = (cpu_seconds(pids[0]) - before) / (time.monotonic() - begin)
+        p50, p99 = 1e3 * np.percentile(waits, (50, 99))
+        columns = f"{p50:6.2f} ms {p99:6.2f} ms {1e3 * waits.max():6.2f} ms {lost:11} {reached:5.0f} Hz {share:11.1%}"
+        print(f"{law:34} {columns}", flush=True)
+        while asking.ready():  # the next one must not be taken for this one
+            time.sleep(0.1)
+    asking.close()

@@ -11,15 +11,12 @@ default machine under PID control along a sine.
 
 import argparse
 import os
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
-from answering import Asking
+from answering import answers
+from processes import REFERENCE, cpu_seconds, nodes
 
 from pneumo_ros.control import Measurement, Pid, closed_loop
 from pneumo_ros.control.reference import sine
@@ -27,36 +24,7 @@ from pneumo_ros.environment import Domain
 from pneumo_ros.plant import Stepper, load_model
 
 START = 6.0  # s for processes to start, find each other and settle
-REFERENCE = ("-p", "reference.shape:=sine")
 LOCKSTEP = ("-p", "real_time_factor:=0.0")
-TICKS = os.sysconf("SC_CLK_TCK")
-
-
-@contextmanager
-def nodes(*commands: tuple[str, ...]) -> Iterator[list[int]]:
-    """Process numbers of `commands`: module below pneumo_ros.ros, then ROS arguments."""
-    environment = {k: v for k, v in os.environ.items() if k != "_ROS_WHEELS_BOOTSTRAP_COMPLETE"}
-    started = [
-        subprocess.Popen(
-            [sys.executable, "-m", f"pneumo_ros.ros.{name}", "--ros-args", *args],
-            env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )
-        for name, *args in commands
-    ]  # fmt: skip
-    try:
-        yield [process.pid for process in started]
-    finally:
-        for process in started:
-            process.terminate()
-        for process in started:
-            process.wait(10)
-
-
-def cpu_seconds(pid: int) -> float:
-    """Processor time of a process so far."""
-    with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-        fields = file.read().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / TICKS
 
 
 class Listener:
@@ -111,30 +79,6 @@ def real_time(listener: Listener, seconds: float, rate: float) -> None:
         late = (last["late_ticks"] - first["late_ticks"]) / (last["ticks"] - first["ticks"])
         columns = "".join(f"{share:>11.1%}" for share in shares)
         print(f"{title:34} {factor:17.5f} {late:11.3%}{columns}", flush=True)
-
-
-def answers(seconds: float, rate: float) -> None:
-    """Print how long valve commands take, law by law, and what the controller needs for it."""
-    from pneumo_ros.ros.controller.settings import LAWS
-
-    asking = Asking(rate)
-    print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")
-    print(f"{'':34} {'p50':>9} {'p99':>9} {'largest':>9} {'unanswered':>11} {'rate':>8} {'controller':>11}")
-    for law in LAWS:
-        patient = ("-p", "measurement_timeout:=10.0")  # 0 V into a silence would be taken for an answer
-        with nodes(("controller", *REFERENCE, *patient, "-p", f"law:={law}")) as pids:
-            while not asking.ready():
-                time.sleep(0.1)
-            asking.ask(2.0)
-            before, begin = cpu_seconds(pids[0]), time.monotonic()
-            waits, lost, reached = asking.ask(seconds)
-            share = (cpu_seconds(pids[0]) - before) / (time.monotonic() - begin)
-        p50, p99 = 1e3 * np.percentile(waits, (50, 99))
-        columns = f"{p50:6.2f} ms {p99:6.2f} ms {1e3 * waits.max():6.2f} ms {lost:11} {reached:5.0f} Hz {share:11.1%}"
-        print(f"{law:34} {columns}", flush=True)
-        while asking.ready():  # the next one must not be taken for this one
-            time.sleep(0.1)
-    asking.close()
 
 
 def lockstep(listener: Listener, seconds: float, rate: float) -> None:

@@ -14,17 +14,20 @@ from launch_ros.substitutions import FindPackageShare
 
 SHARE = FindPackageShare("pneumo_ros")
 DEFAULT_MACHINE = PathJoinSubstitution([SHARE, "config", "axis.yaml"])
+DEFAULT_CONTROL = PathJoinSubstitution([SHARE, "config", "control", "pid.yaml"])
 AXES = ("lift", "reach")  # namespaces; joints are lift_piston and reach_piston
 
 ARGUMENTS = [
     DeclareLaunchArgument("lift_params", default_value=DEFAULT_MACHINE, description="machine file of the lift"),
     DeclareLaunchArgument("reach_params", default_value=DEFAULT_MACHINE, description="machine file of the reach"),
+    DeclareLaunchArgument("lift_control", default_value=DEFAULT_CONTROL, description="control file of the lift"),
+    DeclareLaunchArgument("reach_control", default_value=DEFAULT_CONTROL, description="control file of the reach"),
     DeclareLaunchArgument("simulate", default_value="true", description="simulate both; false: there is a real arm"),
     DeclareLaunchArgument("rviz", default_value="false", description="show the arm in rviz"),
 ]
 
 
-def axis(name: str, params: LaunchConfiguration) -> list[Node]:
+def axis(name: str, control: LaunchConfiguration, params: LaunchConfiguration) -> list[Node]:
     """Simulator and controller of one cylinder."""
     parameters = [params, {"joint_name": f"{name}_piston"}]
     simulator = Node(
@@ -36,7 +39,11 @@ def axis(name: str, params: LaunchConfiguration) -> list[Node]:
         condition=IfCondition(LaunchConfiguration("simulate")),
     )
     controller = Node(
-        package="pneumo_ros", executable="controller", namespace=name, parameters=parameters, output="screen"
+        package="pneumo_ros",
+        executable="controller",
+        namespace=name,
+        parameters=[control, *parameters],
+        output="screen",
     )
     return [simulator, controller]
 
@@ -45,8 +52,8 @@ def generate_launch_description() -> LaunchDescription:
     """Both axes, their joint states in one message, the transforms of the arm."""
     urdf = PathJoinSubstitution([SHARE, "urdf", "pruning_arm.urdf.xacro"])
     description = {"robot_description": ParameterValue(Command(["xacro ", urdf]), value_type=str)}
-    lift = axis("lift", LaunchConfiguration("lift_params"))
-    reach = axis("reach", LaunchConfiguration("reach_params"))
+    lift = axis("lift", LaunchConfiguration("lift_control"), LaunchConfiguration("lift_params"))
+    reach = axis("reach", LaunchConfiguration("reach_control"), LaunchConfiguration("reach_params"))
     joints = Node(
         package="joint_state_publisher",
         executable="joint_state_publisher",

@@ -8,6 +8,7 @@ import numpy as np
 
 from pneumo_ros.control.reference import moves, sine
 from pneumo_ros.control.tuning import Trial
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Stepper
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of what the machine does
 MOVE_FORCE = 0.3  # greatest force that accelerates, of what the supply makes in the smaller chamber
 HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass of the other machine that the gains must suit
 SPOOL = "valve_spool_dynamics"
+REACH = 0.45  # of the stroke, to either side
+SLOWEST = 1e-3  # m/s, top speed of a machine worth tuning for
 HOLD = 4.0  # s after each move
 RUN_UP = 0.2  # of a period of the sine, not judged
 JUDGED = 8.0  # s of the sine at least, in whole periods
@@ -38,9 +41,20 @@ class Task:
 def task_for(
     model: "Model", amplitude: float | None = None, frequency: float | None = None, step: float | None = None
 ) -> Task:
-    """What is not given follows from stroke and speed of the machine."""
-    height = amplitude or AMPLITUDE * model["piston.stroke"]
-    way, top = step or STEP * model["piston.stroke"], top_speed(model)
+    """What is not given follows from stroke and speed of the machine.
+
+    Raises UsageError for motions that leave the stroke, and for a machine that hardly moves.
+    """
+    stroke, top = model["piston.stroke"], top_speed(model)
+    height, way = amplitude or AMPLITUDE * stroke, step or STEP * stroke
+    for name, size in (("amplitude", height), ("step", way)):
+        if size > REACH * stroke:
+            raise UsageError(f"--{name} is {size:g} m; the stroke of {stroke:g} m allows {REACH * stroke:g} m")
+    if top < SLOWEST:
+        raise UsageError(
+            f"{model.name} reaches {top:.2g} m/s with its valve fully open, and a control law cannot make it faster; "
+            "look at supply_pressure, friction and flow coefficients in the machine file"
+        )
     return Task(height, frequency or SINE_SPEED * top / (2.0 * np.pi * height), way, _duration(model, way, top))
 
 

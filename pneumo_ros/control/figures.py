@@ -66,6 +66,6 @@ def _arrival(record: Record, part: slice, hold: float, tolerance: float) -> Arri
     last = -(-len(y) // 4)
     return Arrival(
         float(error[-last:].max()),
-        hold * (outside[-1] + 1) / len(y) if len(outside) else 0.0,
+        hold * float(outside[-1] + 1) / len(y) if len(outside) else 0.0,
         float(np.ptp(y[-last:])),
     )

@@ -8,24 +8,25 @@ import pytest
 from pneumo_ros.command.main import main
 from pneumo_ros.command.trials import begin_at, harsher, task_for, top_speed, trials_of
 from pneumo_ros.control.control_file import load_control
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 
 AXIS = load_model("axis")
-SHORT = ("--amplitude", "0.05", "--frequency", "0.25", "--evaluations", "5")
+SHORT = ("--amplitude", "0.05", "--frequency", "0.25", "--quiet", "--evaluations")
 
 
 def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out, data = tmp_path / "pid.yaml", tmp_path / "pid.json"
-    assert main(["tune", "--law", "pid", *SHORT, "--out", str(out), "--json", str(data), "--quiet"]) == 0
+    assert main(["tune", "--law", "pid", *SHORT, "3", "--out", str(out), "--json", str(data)]) == 0
     said, told = capsys.readouterr().out, json.loads(data.read_text())
     assert "Tuned pid for axis" in said
     assert "proportional" in said
     assert told["cost"]["after"] <= told["cost"]["before"]
-    assert told["evaluations"] == 5
+    assert told["evaluations"] == 3
     found = load_control(out)
     assert {name: found.gains[name] for name in told["gains"]} == told["gains"]
     assert "pneumo tune" in out.read_text().splitlines()[0]
-    assert main(["tune", "--control", str(out), *SHORT, "--out", str(out), "--json", str(data), "--quiet"]) == 0
+    assert main(["tune", "--control", str(out), *SHORT, "1", "--out", str(out), "--json", str(data)]) == 0
     assert json.loads(data.read_text())["cost"]["before"] == pytest.approx(told["cost"]["after"])
 
 
@@ -35,6 +36,8 @@ def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: 
         (["--law", "pidd"], 2, "did you mean pid"),
         (["--evaluations", "0"], 2, "--evaluations is 0"),
         (["--amplitude", "nan"], 2, "--amplitude is nan"),
+        (["--amplitude", "5"], 2, "--amplitude is 5 m; the stroke of 2 m allows 0.9 m"),
+        (["--step", "1"], 2, "--step is 1 m"),
         (["--spool", "-1"], 2, "--spool is -1"),
         (["--control", "cascade", "--law", "pid"], 2, "leave one of them out"),
         (["--control", "no_such"], 3, "no_such cannot be read"),
@@ -57,6 +60,12 @@ def test_the_task_is_within_what_the_machine_can_do() -> None:
     heavy = task_for(AXIS.with_parameters({"piston.mass": 400.0}))
     assert heavy.duration > 1.2 * task.duration  # for lack of force
     assert task_for(AXIS, 0.1, 0.3, 0.02).frequency == 0.3
+
+
+def test_a_machine_that_hardly_moves_is_refused() -> None:
+    """Its sine would take days."""
+    with pytest.raises(UsageError, match="look at supply_pressure"):
+        task_for(AXIS.with_parameters({"air.supply_pressure": 1.1e5}))
 
 
 def test_the_other_machine_is_heavier_and_stickier_and_one_without_lugre_friction_is_fine() -> None:

@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
+from pneumo_ros.plant import load_model
+from pneumo_ros.plant.machine_file import shipped_machines
 from pneumo_ros.records.contract import GLOBAL_TYPES, JOINT, TYPES
 
 CONFIG = Path(__file__).parents[2] / "pneumo_ros" / "config"
@@ -77,8 +79,14 @@ def test_there_are_layouts_of_each_kind() -> None:
     }
 
 
+def test_what_lies_beside_the_machine_files_is_one() -> None:
+    """Commands list them by name."""
+    for name in shipped_machines():
+        assert load_model(name).effects
+
+
 def test_ros2_control_gives_air_the_room_it_needs() -> None:
-    given = yaml.safe_load((CONFIG / "ros2_control.yaml").read_text(encoding="utf-8"))
+    given = yaml.safe_load((CONFIG / "ros2_control" / "controllers.yaml").read_text(encoding="utf-8"))
     control = given["joint_trajectory_controller"]["ros__parameters"]
     assert control["joints"] == [JOINT]
     assert control["interpolate_from_desired_state"] is True

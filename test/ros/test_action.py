@@ -1,6 +1,7 @@
 """FollowJointTrajectory: everything but its transport, for control_msgs has no wheels. Loop and messages are real."""
 
 import asyncio
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -110,6 +111,14 @@ def test_a_piston_that_is_stuck(monkeypatch: pytest.MonkeyPatch) -> None:
     goal = Goal(0.1, 2)
     goal.request.path_tolerance = [SimpleNamespace(name="piston", position=0.02)]
     assert Player(monkeypatch, stuck=True).serve(goal).error_code == PATH_TOLERANCE_VIOLATED
+
+
+def test_tolerances_are_those_of_the_joint_or_the_usual_or_any() -> None:
+    given = [SimpleNamespace(name="boom", position=9.0), SimpleNamespace(name="piston", position=0.02)]
+    assert action.tolerance(given, "piston", 0.003) == 0.02
+    assert action.tolerance(given[:1], "piston", 0.003) == 0.003
+    assert action.tolerance([SimpleNamespace(name="piston", position=0.0)], "piston", 0.003) == 0.003
+    assert action.tolerance([SimpleNamespace(name="piston", position=-1.0)], "piston", 0.003) == math.inf
 
 
 def test_cancelling_brakes_and_stopping_aborts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,10 +5,12 @@ import math
 import pytest
 from ros.guided import TICK, Run
 
-from pneumo_ros.control import Setpoint
+from pneumo_ros.control import Cascade, Setpoint
 from pneumo_ros.control.motion import Waypoint
 from pneumo_ros.errors import UsageError
 from pneumo_ros.ros.controller.guide import Mode
+from pneumo_ros.ros.controller.health import health_of
+from pneumo_ros.ros.controller.loop import Loop
 
 
 def moving() -> Run:
@@ -134,7 +136,7 @@ def test_a_law_that_leaves_the_numbers_sends_0_v() -> None:
     run.loop.law.step = lambda setpoint, measurement: math.nan  # type: ignore[method-assign]  # a law gone wrong
     assert run.go() == 0.0
     assert run.loop.refused == 1
-    run.loop.law.step = lambda setpoint, measurement: 1e9  # type: ignore[method-assign]
+    run.loop.law.step = lambda setpoint, measurement: 1e9  # type: ignore[method-assign]  # another one
     assert run.go() == 10.0
 
 
@@ -146,6 +148,19 @@ def test_old_pressures_are_none() -> None:
     assert run.loop.pressures == {"a": 3e5, "b": None}
     run.go(60)
     assert run.loop.pressures == {"a": None, "b": None}
+
+
+def test_health_names_pressures_that_a_law_needs_and_nobody_sends() -> None:
+    run = Run()
+    assert health_of(run.loop, "", 0.0, False).warnings == ["no reference yet: holding 0 V"]
+    loop = Loop(Cascade(), 0.1)
+    loop.guide.aim(0.1, None, 0.0)
+    loop.press("b", 3e5)
+    assert loop.measure(10**18, 0.0, None) == 0.0
+    (warning,) = health_of(loop, "", 0.0, False).warnings
+    assert warning == "the law needs chamber_a/pressure, of which nothing comes: sending 0 V"
+    loop.press("a", 3e5)
+    assert health_of(loop, "", 0.0, False).message == "running"
 
 
 def test_a_far_sine_is_approached_and_then_followed_as_it_is() -> None:

@@ -58,22 +58,24 @@ def test_the_experiment_is_made_for_the_machine_of_the_twin_and_the_twin_is_the_
 def test_below_ros2_control_the_plant_lives_in_a_namespace(tmp_path: Path) -> None:
     nodes = commands("ros2_control.launch.py", tmp_path, namespace="rig")
     assert set(nodes) == {"rig/simulator", "rig/controller"}
-    assert set(commands("ros2_control.launch.py", tmp_path, simulate="false")) == {"cylinder_1/controller"}
+    (alone,) = commands("ros2_control.launch.py", tmp_path, simulate="false", control="mine.yaml").values()
+    assert alone[-3:] == ["mine.yaml", "--params-file", str(ROOT / "config" / "axis.yaml")]
     above = others("ros2_control.launch.py", namespace="rig", rviz="true")
     assert set(above) == {"robot_state_publisher", "ros2_control_node", "spawner", "rviz2"}
     made = above["robot_state_publisher"][1]["robot_description"]
-    assert made == f"xacro {ROOT}/urdf/axis.urdf.xacro namespace:=rig plugin:=JointStateTopicSystem"
+    assert made == f"xacro {ROOT}/urdf/axis.urdf.xacro namespace:=rig stroke:=2.0 plugin:=JointStateTopicSystem"
     for file in (*above["ros2_control_node"][1], above["rviz2"][0][1]):
         assert Path(file).is_file()
 
 
 def test_the_arm_has_two_axes_with_joints_of_their_own(tmp_path: Path) -> None:
-    nodes = commands("two_axes.launch.py", tmp_path, reach_params="reach.yaml")
+    nodes = commands("two_axes.launch.py", tmp_path, reach_params="reach.yaml", lift_control="mine.yaml")
     assert set(nodes) == {f"{axis}/{name}" for axis in ("lift", "reach") for name in ("simulator", "controller")}
     for name, command in nodes.items():
         assert parameters(command) == {"joint_name": f"{name.partition('/')[0]}_piston"}
     assert "reach.yaml" in nodes["reach/controller"]
     assert "reach.yaml" not in nodes["lift/controller"]
+    assert [name for name, command in nodes.items() if "mine.yaml" in command] == ["lift/controller"]
     above = others("two_axes.launch.py")
     assert set(above) == {"joint_state_publisher", "robot_state_publisher"}
     assert "/lift/joint_states" in above["joint_state_publisher"][1]["source_list"]

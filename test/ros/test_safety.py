@@ -8,11 +8,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from rclpy.qos import QoSProfile
 from ros.axis_probe import AxisProbe
 from ros.processes import Running, node, running
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import FluidPressure, JointState
+from sensor_msgs.msg import FluidPressure
 
 PLACE = "safety"
 RATE = 200.0  # Hz
@@ -112,7 +110,9 @@ def test_a_simulator_that_is_killed_and_started_again(rig: Rig) -> None:
 def test_a_controller_that_is_killed_and_started_again(rig: Rig) -> None:
     one = rig.moving()
     rig.controller.process.send_signal(signal.SIGKILL)
-    one.wait(lambda: one.health(f"{PLACE}/simulator")[1]["voltage_V"] == "0", "a closed valve")
+    one.wait(
+        lambda: one.health(f"{PLACE}/simulator")[1]["voltage_V"] == "0", "a closed valve", 3.0
+    )  # command_timeout, and a look each second
     one.comes_to_rest()
     rig.controller = rig.start("controller")
     rig.controller.process.poll()
@@ -141,7 +141,7 @@ def test_parameters_at_their_worst_under_way(rig: Rig) -> None:
         given = {name.replace(".", "__"): value for name, value in worst.items()}
         have = len(one.heard["valve/command"])
         assert one.set("controller", **given) == (True, "")
-        time.sleep(0.5)
+        time.sleep(0.3)
         commands = [message.data for message in one.heard["valve/command"][have:]]
         assert all(math.isfinite(volts) and abs(volts) <= 10.0 for volts in commands)
         assert abs(one.position) < 0.9
@@ -152,43 +152,6 @@ def test_parameters_at_their_worst_under_way(rig: Rig) -> None:
     assert not one.set("controller", reference__shape="constant", reference__position=1.2)[0]
     one.aim(0.0)
     one.arrives(0.0)
-
-
-def test_clocks_that_jump_back_and_forth(tmp_path: Path) -> None:
-    """A bag that loops: stamps and /clock go back, then far ahead; in between, silence still closes the valve."""
-    command = node("controller", "-r", "__ns:=/loops", use_sim_time=True)
-    with running(*command, cwd=tmp_path) as process:
-        one = AxisProbe("loops")
-        clock = one.publisher(Clock, "/clock", QoSProfile(depth=10))
-        joint = one.publisher(JointState, "joint_states")
-
-        def play(begin: float, seconds: float) -> list[float]:
-            """Stamps and clock from `begin` [s]; the piston stands. The commands by then."""
-            have = len(one.heard["valve/command"])
-            for tick in range(round(200 * seconds)):
-                message, now = JointState(name=["piston"], position=[0.0]), Clock()
-                now.clock.sec, now.clock.nanosec = divmod(round((begin + tick / 200) * 1e9), 1_000_000_000)
-                message.header.stamp = now.clock
-                clock.publish(now)
-                joint.publish(message)
-                time.sleep(0.002)
-            return [message.data for message in one.heard["valve/command"][have:]]
-
-        play(100.0, 0.1)
-        for _ in range(3):  # best effort may lose one
-            one.aim(0.3)
-        for begin in (100.1, 5.0, 1e6, 50.0):
-            commands = play(begin, 1.0)
-            assert max(commands) > 0.78, process.said
-            assert all(0.0 <= volts <= 10.0 for volts in commands)
-        for tick in range(40):  # the clock goes on, nothing is measured
-            now = Clock()
-            now.clock.sec, now.clock.nanosec = 51, 25_000_000 * (tick % 40)
-            clock.publish(now)
-            time.sleep(0.005)
-        one.wait(lambda: one.voltage == 0.0, "0 V")
-        one.close()
-        assert process.end() == 0
 
 
 def test_numbers_that_are_none_change_nothing(rig: Rig) -> None:

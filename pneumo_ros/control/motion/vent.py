@@ -12,7 +12,7 @@ class Vent:
     """With the supply shut off, a closed-centre 5/3 valve opened either way empties both chambers: one through its
     exhaust edge, the other back into the dead supply line or, where that is blocked, half a period later.
 
-    Done when both pressures are within 5 % of the atmosphere's, or without pressures, or at the latest, after 20 s.
+    Done when both pressures are within 5 % of the atmosphere's; without pressures, and at the latest, after 20 s.
     """
 
     def __init__(self, begin: float, atmospheric_pressure: float, max_voltage: float) -> None:

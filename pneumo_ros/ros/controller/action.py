@@ -1,5 +1,7 @@
 """~/follow_joint_trajectory, where control_msgs is installed."""
 
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rclpy.action import ActionServer, CancelResponse
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from pneumo_ros.ros.controller.node import Controller
 
 PERIOD = 0.05  # s between two looks at the progress, and between two messages of feedback
+PATIENCE = 2.0  # s for the goal to be reached after its time, where the request names none
 
 
 class Following:
@@ -52,12 +55,10 @@ class Following:
             self._tell(goal)
 
     def _progress(self, request: Any, trajectory: Any) -> Progress:
-        name = self._node.parameters["joint_name"]
-        goal = [one.position for one in request.goal_tolerance if one.name == name and one.position > 0.0]
-        path = [one.position for one in request.path_tolerance if one.name == name and one.position > 0.0]
-        patience = nanoseconds(request.goal_time_tolerance) * 1e-9
-        tolerance = goal[0] if goal else self._node.parameters["goal_tolerance"]
-        return Progress(trajectory, tolerance, path[0] if path else 0.0, patience or 2.0)
+        name, usual = self._node.parameters["joint_name"], self._node.parameters["goal_tolerance"]
+        goal = tolerance(request.goal_tolerance, name, usual)
+        path = tolerance(request.path_tolerance, name, math.inf)
+        return Progress(trajectory, goal, path, nanoseconds(request.goal_time_tolerance) * 1e-9 or PATIENCE)
 
     async def _pause(self) -> None:
         future: Future = Future()
@@ -81,3 +82,9 @@ class Following:
             feedback.actual.positions = [position]
             feedback.error.positions = [wanted.position - position]
         goal.publish_feedback(feedback)
+
+
+def tolerance(given: Sequence[Any], joint: str, usual: float) -> float:
+    """Tolerance of position [m] of `joint` among JointTolerance messages: 0 means the `usual` one, -1 means any."""
+    found = next((one.position for one in given if one.name == joint), 0.0)
+    return math.inf if found < 0.0 else found or usual

@@ -1,5 +1,6 @@
 """What the controller says of itself on /diagnostics."""
 
+from pneumo_ros.records.contract import PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros.controller.guide import Mode
 from pneumo_ros.ros.controller.loop import Loop
 from pneumo_ros.ros.diagnostics import Health
@@ -24,7 +25,16 @@ def health_of(loop: Loop, refused: str, age: float | None, stale: bool) -> Healt
 
 def _warnings(loop: Loop, age: float | None, stale: bool) -> list[str]:
     missing = "no measurement yet" if age is None else "measurements stay away: sending 0 V"
-    warnings = [missing] if age is None or stale else []
+    warnings = [missing] if age is None or stale else _missing_pressures(loop)
     if not loop.guide.motion.asked:
         warnings.append("no reference yet: holding 0 V")
     return warnings if loop.guide.mode is Mode.FOLLOWING else [*warnings, loop.guide.mode.value]
+
+
+def _missing_pressures(loop: Loop) -> list[str]:
+    """A warning if the law reads pressures that nobody sends."""
+    known, topics = loop.pressures, {"a": PRESSURE_A, "b": PRESSURE_B}
+    silent = [topic for chamber, topic in topics.items() if known[chamber] is None]
+    if not (silent and loop.law.reads_pressures):
+        return []
+    return [f"the law needs {' and '.join(silent)}, of which nothing comes: sending 0 V"]

@@ -1,5 +1,6 @@
 """The topics on which others say where the piston is to go."""
 
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from pneumo_ros.ros.controller.node import Controller
 
 REFERENCE, TRAJECTORY, COMMANDS = "position/reference", "joint_trajectory", "joint_commands"
-QUIET = 5.0  # s between two complaints of the same kind
+QUIET = 5.0  # s between two complaints of one kind of stream
 
 
 class Inputs:
@@ -28,6 +29,7 @@ class Inputs:
         """Move `joint`; other joints in the same messages are somebody else's."""
         self._node, self._joint = node, joint
         self.refused = ""  # what was refused last, and why
+        self._complained: dict[str, float] = {}  # kind of input -> when the log last told of one [s]
         self._commands = readers.JointReader(joint, whole=True)
         node.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
         node.create_subscription(JointTrajectory, TRAJECTORY, self._trajectory, SUBSCRIBE)
@@ -79,7 +81,14 @@ class Inputs:
         except UsageError as error:
             self._node.loop.refused += 1
             self.refused = f"{what} refused: {error}"
-            self._node.get_logger().warning(self.refused, throttle_duration_sec=QUIET)
+            self._complain(what)
+
+    def _complain(self, what: str) -> None:
+        """Streams would fill the log; a trajectory comes alone, and whoever sent it wants to know each time."""
+        now = time.monotonic()
+        if what == "trajectory" or now - self._complained.get(what, -QUIET) >= QUIET:
+            self._complained[what] = now
+            self._node.get_logger().warning(self.refused)
 
 
 def _ambiguous() -> None:

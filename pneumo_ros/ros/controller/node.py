@@ -9,21 +9,21 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from pneumo_ros.control import Law
 from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
-from pneumo_ros.ros.controller.guiding import limits_of, set_guide
+from pneumo_ros.ros.controller.guiding import set_guide
 from pneumo_ros.ros.controller.health import health_of
 from pneumo_ros.ros.controller.inputs import Inputs
 from pneumo_ros.ros.controller.loop import Loop
 from pneumo_ros.ros.controller.services import Services
 from pneumo_ros.ros.controller.setpoints import Setpoints
 from pneumo_ros.ros.controller.settings import (
-    LAWS,
     SETTINGS,
     absent,
+    check,
     gains_of,
+    law_of,
     machine_of,
     of_a_machine_file,
     reference_of,
@@ -54,11 +54,11 @@ class Controller(AxisNode):
         foreign = of_a_machine_file(values.begun_with)
         values.refuse_unknown(lambda name: name in foreign or tolerated(name))
         self._joint, self._law = values["joint_name"], values["law"]
-        self._check(values.values())
-        self.loop = Loop(self._make_law(values.values()), values["measurement_timeout"])
+        check(values.values())
+        self.loop = Loop(law_of(values.values()), values["measurement_timeout"])
         self.loop.guide.built_in = reference_of(values.values())
         set_guide(self.loop.guide, values.values(), 0.0)
-        values.check, values.apply = self._check, self._apply
+        values.check, values.apply = check, self._apply
         self._clock_ns = clock or (self._simulated if values.uses_simulated_time else time.monotonic_ns)
         self._heard: int | None = None  # when the last measurement came
         self._stamp = 0  # of the last measurement
@@ -98,13 +98,6 @@ class Controller(AxisNode):
         return self._stamp + self._since() if self._stamp else self.get_clock().now().nanoseconds
 
     # --- parameters -------------------------------------------------------------------------------------------------
-
-    def _make_law(self, values: Values) -> Law:
-        return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
-
-    def _check(self, values: Values) -> None:
-        limits_of(values).on_stroke(self._make_law(values).machine.stroke)
-        reference_of(values)
 
     def _apply(self, changed: Values) -> None:
         values, loop = {**self.parameters.values(), **changed}, self.loop

@@ -1,5 +1,6 @@
 """How a trajectory that somebody waits for is coming along. No ROS in here."""
 
+import math
 from typing import NamedTuple
 
 from pneumo_ros.control.motion import Motion, Trajectory
@@ -19,11 +20,11 @@ class Progress:
     """Watches one trajectory until it is done.
 
     At its end the piston has `patience` [s] to come within `goal_tolerance` [m]; on the way it may not be more than
-    `path_tolerance` [m] off, 0: no matter.
+    `path_tolerance` [m] off.
     """
 
     def __init__(
-        self, trajectory: Trajectory, goal_tolerance: float, path_tolerance: float = 0.0, patience: float = 2.0
+        self, trajectory: Trajectory, goal_tolerance: float, path_tolerance: float = math.inf, patience: float = 2.0
     ) -> None:
         self.trajectory, self._goal, self._path, self._patience = trajectory, goal_tolerance, path_tolerance, patience
 
@@ -33,7 +34,7 @@ class Progress:
             return Verdict(PATH_TOLERANCE_VIOLATED, motion.reason or "something else was asked for")
         error = self.trajectory(time).position - position
         if time < self.trajectory.end:
-            if 0.0 < self._path < abs(error) and time >= self.trajectory.begin:
+            if abs(error) > self._path and time >= self.trajectory.begin:
                 return Verdict(PATH_TOLERANCE_VIOLATED, f"{abs(error):.3g} m off on the way, allowed is {self._path:g}")
             return None
         if abs(error) <= self._goal:

@@ -1,7 +1,7 @@
 """Messages that ask for a motion, as what the guide takes."""
 
 from builtin_interfaces.msg import Duration, Time
-from trajectory_msgs.msg import JointTrajectory
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from pneumo_ros.control.motion import Waypoint
 from pneumo_ros.errors import UsageError
@@ -26,7 +26,7 @@ def nanoseconds(moment: Time | Duration) -> int:
     return int(moment.sec * 1_000_000_000 + moment.nanosec)
 
 
-def _waypoint(number: int, point: object, joints: int, index: int) -> Waypoint:
+def _waypoint(number: int, point: JointTrajectoryPoint, joints: int, index: int) -> Waypoint:
     found: list[float | None] = []
     for name in ("positions", "velocities", "accelerations"):
         values = getattr(point, name)
@@ -35,4 +35,4 @@ def _waypoint(number: int, point: object, joints: int, index: int) -> Waypoint:
         found.append(float(values[index]) if len(values) else None)
     position, velocity, acceleration = found
     assert position is not None
-    return Waypoint(nanoseconds(point.time_from_start) * 1e-9, position, velocity, acceleration)  # type: ignore[attr-defined]
+    return Waypoint(nanoseconds(point.time_from_start) * 1e-9, position, velocity, acceleration)

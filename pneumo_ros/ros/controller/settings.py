@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pneumo_ros.control import LAWS, Machine, Reference, ValveInverse
+from pneumo_ros.control import LAWS, Law, Machine, Reference, ValveInverse
 from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.plant import load_model
@@ -102,6 +102,17 @@ def _require_within(values: Mapping[str, Any], *positions: float) -> None:
 def machine_of(values: Mapping[str, Any]) -> Machine:
     """What the law knows of the machine."""
     return Machine.of(values[EFFECTS], values)
+
+
+def law_of(values: Mapping[str, Any]) -> Law:
+    """The law that the parameters describe; UsageError for a gain out of range or values that are no valve."""
+    return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
+
+
+def check(values: Mapping[str, Any]) -> None:
+    """Raise UsageError unless the parameters together make a law, leave room to move, and a reference inside it."""
+    limits_of(values).on_stroke(law_of(values).machine.stroke)
+    reference_of(values)
 
 
 def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
