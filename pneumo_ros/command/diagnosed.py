@@ -144,7 +144,7 @@ def refused(result: Mapping[str, Any]) -> str:
             lines.append((f"  {one['effect']}", number(one["t"]), f"cannot be told from {listed(one['rival_of'])}"))
     others = [one for one in result["candidates"] if not one["added"] and not one["rival_of"]]
     for one in others[:SHOWN]:
-        why = "; ".join(one["objections"][:REASONS]) or "another one explains as much or more"
+        why = "; ".join(one["objections"][:REASONS])
         lines.append((f"  {one['effect']}", number(one["t"]), why))
     return columns([("Not added", "t", "because"), *lines], right=(1,)) if lines else ""
 

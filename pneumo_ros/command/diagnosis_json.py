@@ -80,9 +80,17 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
         "size": one.size,
         "added": one.effect in added,
         "rival_of": rivals,
-        "objections": list(one.objections),
+        "objections": list(one.objections) or _outdone(one.effect, list(added), rivals, outcome.model),
         "parameters": _fitted(_trial(one, outcome), outcome.model),
     }
+
+
+def _outdone(name: str, added: list[str], rivals: list[str], model: "Model") -> list[str]:
+    """Why nothing speaks against an effect and yet another one was added."""
+    if name in added or rivals or not added:
+        return []
+    simpler = [other for other in added if other in model.library.find(name).contains]
+    return [f"{simpler[0]} explains as much with fewer parameters" if simpler else "another one explains more"]
 
 
 def _trial(one: "Ranked", outcome: "Outcome") -> "Trial":
