@@ -63,10 +63,18 @@ def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
     return {n: max(value - NOISE.get(n, 1.0), 0.0) for n, value in mean_squares(evidence, residual).items()}
 
 
+def _surprise(evidence: Evidence, residual: Array) -> Array:
+    """Minus the log likelihood of each window, by the scales that the residual itself has.
+
+    By those of another model a larger moving mass, which noise of the position moves too, would look bad at rest.
+    """
+    scale = family_scales(evidence, residual)[evidence.family]
+    return np.asarray(np.log(scale) + huber(residual / scale))
+
+
 def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
-    """Loss that `better` saves against `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
-    scale = family_scales(evidence, better)[evidence.family]
-    difference = OVERLAP**2 * (huber(worse / scale) - huber(better / scale))
+    """Log likelihood that `better` gains on `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
+    difference = OVERLAP**2 * (_surprise(evidence, worse) - _surprise(evidence, better))
     blocks = np.clip(np.bincount(evidence.block, difference), -MOST_BLOCK, MOST_BLOCK)
     spread = float(np.sqrt(np.sum(blocks**2)))
     return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0

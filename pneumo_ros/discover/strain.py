@@ -19,6 +19,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 TRIED = 2
+FEW = 3  # parameters: a profile can stand in for anything
 ITERATIONS = 12
 
 
@@ -31,7 +32,7 @@ def followed(fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis]) -> l
     """Effects that may relieve the base, each fitted with all of it; hypotheses and their held-out residuals."""
     best: dict[str, Hypothesis] = {}
     for h in sorted(screened, key=lambda h: -h.relief):
-        if h.relief > 0.5 * STRAINED and not any(c.logarithmic for c in h.coordinates):
+        if h.relief > STRAINED and len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates):
             best.setdefault(h.name, h)
     found = []
     for h in list(best.values())[:TRIED]:

@@ -96,7 +96,7 @@ def _reason(outcome: "Outcome", one: "Ranked", found: str) -> Html:
     elif one.size == 0.0:
         said = "fits best when it is not there at all"
     else:
-        said = _plain("; ".join(one.objections))
+        said = _plain("; ".join(one.objections) or "another one explains more")
     return tag("div", _chip({RIVAL: "not told apart"}.get(found, found), found), " ", said, class_="reason")
 
 
