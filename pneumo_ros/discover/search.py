@@ -205,9 +205,13 @@ class Search:
         """Trials of the hypotheses, and of effects that strained base parameters may stand in for."""
         first = base.model.effects == self.start.effects
         trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
-        if strain(base) > STRAINED:
+        if strain(base) - nothing.relief > STRAINED:
             good = [trial.name for trial in trials if not trial.objections]
-            pairs = [pair for pair in followed(self.fitter, base, screened) if pair[0].name not in good]
+            pairs = [
+                pair
+                for pair in followed(self.fitter, base, screened, STRAINED + nothing.relief)
+                if pair[0].name not in good
+            ]
             trials += put_on_trial(base, held, [h for h, _ in pairs], [r for _, r in pairs], nothing, first)
         return trials
 

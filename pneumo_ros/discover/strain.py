@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
-from pneumo_ros.discover.screening import STRAINED
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -28,11 +27,13 @@ def strain(base: BaseFit) -> float:
     return 0.5 * float(np.sum(base.offset**2))
 
 
-def followed(fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Array]]:
-    """Effects that may relieve the base, each fitted with all of it; hypotheses and their held-out residuals."""
+def followed(
+    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], least: float
+) -> list[tuple[Hypothesis, Array]]:
+    """Effects that may relieve the base by more than `least`, fitted with all of it, and their held-out residuals."""
     best: dict[str, Hypothesis] = {}
     for h in sorted(screened, key=lambda h: -h.relief):
-        if h.relief > STRAINED and len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates):
+        if h.relief > least and len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates):
             best.setdefault(h.name, h)
     found = []
     for h in list(best.values())[:TRIED]:
