@@ -84,5 +84,6 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
 
 
 def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
+    """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %."""
     names = [f"lugre_friction.{key}" for key in FREE]
     return {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}

@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Any
 
@@ -83,7 +84,8 @@ class Player:
 
     def serve(self, goal: Goal) -> Any:
         """The result of a goal."""
-        return asyncio.run(action.Following(self, Action)._execute(goal))
+        with ThreadPoolExecutor(1) as pool:  # a browser of other tests may have left its loop running in this thread
+            return pool.submit(asyncio.run, action.Following(self, Action)._execute(goal)).result()
 
 
 def test_a_goal_that_is_reached(monkeypatch: pytest.MonkeyPatch) -> None:
