@@ -38,6 +38,11 @@ class Known:
     step: Array
 
 
+def strain(offset: Array) -> float:
+    """Log likelihood that parameters cost by their priors; offset (free,): how far they are from the centres."""
+    return 0.5 * float(np.sum(offset**2))
+
+
 def residuals(evidence: Evidence, model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
     """Residuals (variants, residuals) of `model` with some values changed."""
     return evidence.residuals(model, vectors(model, variants))
@@ -80,7 +85,7 @@ def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = I
 
 
 def _cost(evidence: Evidence, r: Array, offset: Array, scale: Array) -> float:
-    return float(OVERLAP**2 * np.sum(huber(r / scale[evidence.family])) + 0.5 * np.sum(offset**2))
+    return float(OVERLAP**2 * np.sum(huber(r / scale[evidence.family]))) + strain(offset)
 
 
 def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> BaseFit:
@@ -99,7 +104,7 @@ def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
         weight = weights(base.evidence, after, scale)
         shift, _A, _bread = solve(base.slopes, here, weight, np.ones(len(base.names)), base.offset)
         after = here + base.slopes @ shift
-    value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((shift + base.offset) ** 2))
+    value = log_likelihood(base.evidence, after) - strain(shift + base.offset)
     return shift, after, value
 
 
@@ -111,4 +116,4 @@ def unaided(base: BaseFit) -> Hypothesis:
 
 def relief_of(base: BaseFit, shift: Array) -> float:
     """Log likelihood of the priors that base parameters regain by a shift."""
-    return 0.5 * float(np.sum(base.offset**2) - np.sum((shift + base.offset) ** 2))
+    return strain(base.offset) - strain(shift + base.offset)

@@ -16,12 +16,7 @@ from pneumo_ros.discover.hypothesis import (
     wald,
     weights,
 )
-from pneumo_ros.discover.measures import (
-    advantage,
-    explained,
-    force,
-    gains,
-)
+from pneumo_ros.discover.measures import advantage, explained, force, gains
 from pneumo_ros.discover.trial import T_LEAST, Trial
 
 Array = NDArray[np.float64]

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.prediction import HORIZON, typical_error
-from pneumo_ros.discover.search import Found, Progress, Search, Step
+from pneumo_ros.discover.search import Progress, Search
+from pneumo_ros.discover.steps import Found, Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.run import Run

@@ -1,6 +1,7 @@
 """A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,7 @@ class Fitter:
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train, self.held = Evidence(start, train), Evidence(start, held)
-        self._fitted: BaseFit | None = None
+        self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
 
     def known(self, model: Model) -> Known:
         """What is known of the free parameters of `model`: the start's within 5 %, of added effects hardly anything."""
@@ -68,11 +69,9 @@ class Fitter:
         """The model on training and held-out evidence."""
         return self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
 
-    def fit(self, model: Model) -> BaseFit:
-        """The model on training evidence; that of the last one asked for is kept."""
-        if self._fitted is None or self._fitted.model is not model:
-            self._fitted = base_fit(self.train, self.whole, model, self.known(model))
-        return self._fitted
+    def _fit(self, model: Model) -> BaseFit:
+        """The model on training evidence."""
+        return base_fit(self.train, self.whole, model, self.known(model))
 
     def deviations(self, model: Model) -> dict[str, float]:
         """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""

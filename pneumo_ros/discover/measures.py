@@ -6,11 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import (
-    OVERLAP,
-    family_scales,
-    huber,
-)
+from pneumo_ros.discover.hypothesis import OVERLAP, family_scales, huber
 
 Array = NDArray[np.float64]
 

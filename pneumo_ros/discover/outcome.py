@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison
-from pneumo_ros.discover.search import Step
+from pneumo_ros.discover.steps import Step
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]

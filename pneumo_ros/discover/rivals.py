@@ -5,12 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.hypothesis import (
-    BaseFit,
-)
-from pneumo_ros.discover.measures import (
-    pooled_advantage,
-)
+from pneumo_ros.discover.hypothesis import BaseFit
+from pneumo_ros.discover.measures import pooled_advantage
 from pneumo_ros.discover.trial import MATERIAL, T_LEAST, Trial
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.basefit import relief_of
+from pneumo_ros.discover.basefit import relief_of, strain
 from pneumo_ros.discover.coordinates import Coordinate, starts
 from pneumo_ros.discover.hypothesis import (
     BaseFit,
@@ -35,7 +35,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     """
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
-    if 0.5 * float(np.sum(base.offset**2)) > STRAINED:
+    if strain(base.offset) > STRAINED:
         tasks += [(name, effect, TINY * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
@@ -79,7 +79,7 @@ def _linear(
         c = effect[k]
         start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
     relief = relief_of(base, x[:p])
-    value = log_likelihood(base.evidence, after) - 0.5 * float(np.sum((x[:p] + base.offset) ** 2))
+    value = log_likelihood(base.evidence, after) - strain(x[:p] + base.offset)
     return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
 
 

@@ -1,22 +1,18 @@
 """The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import unaided
+from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
-from pneumo_ros.discover.hypothesis import (
-    BaseFit,
-    Hypothesis,
-    family_scales,
-    huber,
-    missing,
-)
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales, huber
 from pneumo_ros.discover.measures import excess, force
 from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.prediction import pays, windowed
@@ -25,7 +21,8 @@ from pneumo_ros.discover.rivals import rivals, simplest
 from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.discover.slip_trials import POOR, as_trial, blind, try_candidates
 from pneumo_ros.discover.slips import errors, polished, slips
-from pneumo_ros.discover.strain import followed, strain
+from pneumo_ros.discover.steps import Found, Step
+from pneumo_ros.discover.strain import followed
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
@@ -40,28 +37,6 @@ EXPLAINED = 0.8  # share of what noise does not explain in an equation
 MOST = 4  # effects added
 
 
-@dataclass(frozen=True)
-class Step:
-    """One round: the model it began with, all trials best first, and what was added (None in the last round)."""
-
-    model: Model
-    trials: tuple[Trial, ...]
-    added: Trial | None
-    rivals: tuple[Trial, ...]
-    before: dict[str, float]  # scale over noise by family on held-out runs
-    after: dict[str, float]
-
-
-@dataclass(frozen=True)
-class Found:
-    """The outcome: refitted base, final model, the rounds that led there."""
-
-    base: Model
-    model: Model
-    steps: tuple[Step, ...]
-    interrupted: bool = False
-
-
 class Search:
     """Everything that stays the same during one search."""
 
@@ -71,7 +46,9 @@ class Search:
         self.progress = progress or (lambda share, text: None)
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
-        self._predicted: list[tuple[Model, dict[str, float]]] = []
+        # what is asked of a model again is kept
+        self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
+        self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
         self.left = 0.0  # N, root mean square of what is unexplained in the momentum equation
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
@@ -109,14 +86,6 @@ class Search:
             return Found(base, model, tuple(steps), interrupted=True)
         return Found(base, model, tuple(steps))
 
-    def predicted(self, model: Model) -> dict[str, float]:
-        """`windowed` of the held-out runs; what was asked for before is kept."""
-        for one, known in self._predicted:
-            if one is model:
-                return known
-        self._predicted.append((model, windowed(model, self.held.runs)))
-        return self._predicted[-1][1]
-
     @staticmethod
     def beyond_doubt(trial: Trial) -> bool:
         """Whether an effect need not show in predictions: its equation is explained, or the data cannot tell at all.
@@ -127,7 +96,7 @@ class Search:
 
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""
-        made = slips(model, self.train.runs, self.held.runs)
+        made = self.slips(model)
         if made is None:
             return model
         added = [name for name in model.effects if name not in self.start.effects]
@@ -138,7 +107,7 @@ class Search:
 
         That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back.
         """
-        if not model.force_driven and slips(model, self.train.runs, self.held.runs) is not None:
+        if not model.force_driven and self.slips(model) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
         new = polish(self.fitter, model, self.train.runs).model
@@ -150,7 +119,7 @@ class Search:
 
         Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
         """
-        made = slips(model, self.train.runs, self.held.runs)
+        made = self.slips(model)
         if made is None or self.left > TEXTURE * self.held.drive:
             return model, None
         alone, found = made
@@ -160,7 +129,7 @@ class Search:
             return model, None
         tried = try_candidates(alone, found, blind(screened, alone), known, held)
         first = model.effects == self.start.effects
-        trials = [as_trial(c, missing(alone)[c.name], train, held, first) for c in tried]
+        trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, first) for c in tried]
         good = [t for t in trials if not t.objections]
         best = good[0] if good else None
         step = Step(model, tuple(trials), best, (), {"slip": usual}, {"slip": usual})
@@ -173,7 +142,7 @@ class Search:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fitter.fits(model)
         nothing = unaided(base)
-        held = replace(held, residual=held_out(base, held, [nothing])[0])
+        held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
         hypotheses, screened = self.candidates(base)
         trials = self.tried(base, held, nothing, hypotheses, screened)
         now = excess(self.held, held.residual)
@@ -205,15 +174,9 @@ class Search:
         """Trials of the hypotheses, and of effects that strained base parameters may stand in for."""
         first = base.model.effects == self.start.effects
         trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
-        if strain(base) - nothing.relief > STRAINED:
-            good = [trial.name for trial in trials if not trial.objections]
-            pairs = [
-                pair
-                for pair in followed(self.fitter, base, screened, STRAINED + nothing.relief)
-                if pair[0].name not in good
-            ]
-            trials += put_on_trial(base, held, [h for h, _ in pairs], [r for _, r in pairs], nothing, first)
-        return trials
+        good = [trial.name for trial in trials if not trial.objections]
+        relieving = followed(self.fitter, base, screened, STRAINED + nothing.relief, good)
+        return trials + put_on_trial(base, held, *relieving, nothing, first)
 
     def worst(self, base: BaseFit) -> BaseFit:
         """The part of the training evidence where the model is worst: enough to rank by."""

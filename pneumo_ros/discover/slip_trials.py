@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.coordinates import Coordinate
+from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import moves
 from pneumo_ros.discover.slips import FEW, Slips, errors, friction_priors
@@ -47,7 +47,7 @@ def try_candidates(
     begin = [(*_begin(alone, found, name), name) for name in names]
     result = []
     for _, model, name in sorted(begin, key=lambda one: one[0])[:TRIED]:
-        refit = _fit(alone, found, model, missing(alone)[name], known)
+        refit = _fit(alone, found, model, name, known)
         fitted, std = refit.model, {n: e.std for n, e in refit.estimates.items() if n.startswith(f"{name}.")}
         train, after = (errors(fitted, events(fitted)) for events in (found.train, found.held))
         result.append(Slipping(name, fitted, train, after, std))
@@ -58,7 +58,7 @@ def try_candidates(
 
 def _begin(alone: Model, found: Slips, name: str) -> tuple[float, Model]:
     """Where the fit of an effect begins, the best of some sizes, then of some shapes; before it, its median error."""
-    effect = missing(alone)[name]
+    effect = coordinates(alone.library.find(name))
     some = np.arange(0, len(found.train_rows), EVERY)
 
     def tried(values: dict[str, float]) -> tuple[float, Model]:
@@ -80,8 +80,8 @@ def _values(effect: tuple[Coordinate, ...], share: float) -> dict[str, float]:
     return {c.name: c.value(size[c.logarithmic] if c.is_size else 0.0) for c in effect}
 
 
-def _fit(alone: Model, found: Slips, begin: Model, effect: tuple[Coordinate, ...], known: dict[str, float]) -> Refit:
-    prior = friction_priors(alone, known)
+def _fit(alone: Model, found: Slips, begin: Model, name: str, known: dict[str, float]) -> Refit:
+    prior, effect = friction_priors(alone, known), coordinates(alone.library.find(name))
     prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
     return refit_segments(begin, found.train(begin), list(prior), prior)
 

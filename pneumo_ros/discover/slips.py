@@ -71,15 +71,13 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
 
     `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise.
     """
-    prior = friction_priors(alone, known)
-    names = list(prior)
+    prior, own = friction_priors(alone, known), found.train(alone)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
         if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
             sure = known[name] < SURE * abs(alone[name])
             prior[name] = known[name] if sure else LOOSE * abs(alone[name])
-            names.append(name)
-    new = refit_segments(alone, found.train(alone), names, prior).model
-    before, after = (float(np.median(errors(m, found.train(m)))) for m in (alone, new))
+    new = refit_segments(alone, own, list(prior), prior).model
+    before, after = (float(np.median(errors(m, part))) for m, part in ((alone, own), (new, found.train(new))))
     return new if after < before else alone
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.discover.basefit import relief_of, strain
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
@@ -22,24 +23,21 @@ FEW = 3  # parameters: a profile can stand in for anything
 ITERATIONS = 12
 
 
-def strain(base: BaseFit) -> float:
-    """Log likelihood that base parameters cost by their priors."""
-    return 0.5 * float(np.sum(base.offset**2))
-
-
 def followed(
-    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], least: float
-) -> list[tuple[Hypothesis, Array]]:
-    """Effects that may relieve the base by more than `least`, fitted with all of it, and their held-out residuals."""
+    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], least: float, known: Sequence[str]
+) -> tuple[list[Hypothesis], list[Array]]:
+    """Effects that may relieve the base by more than `least`, fitted with all of it, and their held-out residuals.
+
+    What is `known` to be good is not followed. Without strain there are none: no base regains more than it is strained.
+    """
     best: dict[str, Hypothesis] = {}
     for h in sorted(screened, key=lambda h: -h.relief):
         if h.relief > least and len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates):
             best.setdefault(h.name, h)
-    found = []
-    for h in list(best.values())[:TRIED]:
-        new = fitter.refit(fitter.extended(base.model, h), ITERATIONS)
-        found.append((_hypothesis(fitter, base, h.name, new), fitter.held.residual(new)))
-    return found
+    chosen = [h for h in list(best.values())[:TRIED] if h.name not in known]
+    models = [fitter.refit(fitter.extended(base.model, h), ITERATIONS) for h in chosen]
+    found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
+    return found, [fitter.held.residual(new) for new in models]
 
 
 def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> Hypothesis:
@@ -50,8 +48,8 @@ def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> Hypothe
     std = fitter.deviations(new)
     return Hypothesis(
         name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, fit.residual,
-        likelihood=log_likelihood(fitter.train, fit.residual) - 0.5 * float(np.sum(offset**2)),
+        likelihood=log_likelihood(fitter.train, fit.residual) - strain(offset),
         t=max(abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size),
-        relief=strain(base) - 0.5 * float(np.sum(offset**2)),
+        relief=relief_of(base, offset - base.offset),
         slopes=fit.slopes[:, columns] / np.array([c.prior for c in own]),
     )  # fmt: skip

@@ -6,9 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate
-from pneumo_ros.discover.hypothesis import (
-    Hypothesis,
-)
+from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.measures import equation_helped
 
 Array = NDArray[np.float64]
