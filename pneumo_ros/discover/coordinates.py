@@ -10,6 +10,7 @@ from pneumo_ros.plant.effect import Effect
 Array = NDArray[np.float64]
 
 _FACTOR = 4.0  # between the shapes that are tried first
+_TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many either way: broad resonances overlap
 _RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
 
@@ -26,6 +27,7 @@ class Coordinate:
     neutral: float | None
     low: float
     high: float
+    unit: str = ""
 
     @property
     def logarithmic(self) -> bool:
@@ -36,6 +38,11 @@ class Coordinate:
     def is_size(self) -> bool:
         """Whether the parameter fades the effect in, rather than shaping it."""
         return self.neutral is not None
+
+    @property
+    def tuned(self) -> bool:
+        """Whether the parameter is the frequency of something that rings: seen near its resonance, nowhere else."""
+        return self.logarithmic and not self.is_size and self.unit in ("Hz", "rad/s")
 
     @property
     def prior(self) -> float:
@@ -82,18 +89,29 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
         ]
         span = _RANGE * (p.high - p.low) if np.isfinite(p.high - p.low) else 1.0
         typical = p.neutral + (max(like, default=0.0) or span)
-    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high)
+    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit)
 
 
 def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
-    """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,)."""
+    """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,).
+
+    Frequencies are tried more finely, beside the other shapes at four times the usual: much damping, broad resonances.
+    """
     usual = np.array([0.0 if c.logarithmic or not c.is_size else 1.0 for c in effect])
+    shapes = [k for k, c in enumerate(effect) if not c.is_size and c.logarithmic]
     found = [usual]
-    for k, c in enumerate(effect):
-        if not c.is_size and c.logarithmic:
-            for factor in (_FACTOR, 1.0 / _FACTOR):
-                u = usual.copy()
-                u[k] = c.clip(np.log(factor))
-                if abs(u[k]) > 0.5:
-                    found.append(u)
+    for k in shapes:
+        tuned = effect[k].tuned
+        begin = _moved(effect, usual, [j for j in shapes if j != k], _FACTOR) if tuned else usual
+        factors = _TUNE ** np.arange(-_TUNED, _TUNED + 1.0) if tuned else (_FACTOR, 1.0 / _FACTOR)
+        tried = [_moved(effect, begin, [k], float(factor)) for factor in factors]
+        found += [u for u in tried if tuned or abs(u[k]) > 0.5]
     return found
+
+
+def _moved(effect: tuple[Coordinate, ...], u: Array, which: list[int], factor: float) -> Array:
+    """u with some coordinates at that many times their usual value, as far as is allowed."""
+    new = u.copy()
+    for k in which:
+        new[k] = effect[k].clip(np.log(factor))
+    return new

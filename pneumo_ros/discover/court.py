@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
 DECOYS = 12
+KNOWN = 0.5  # of a size: runs that know it less well do not speak against it
 FEW_RUNS = 3
 
 
@@ -74,7 +75,11 @@ def magnitude(h: Hypothesis) -> float:
 
 
 def stable(base: BaseFit, h: Hypothesis) -> bool:
-    """Whether the sizes keep their sign and half their value, whichever run is left out (linearised)."""
+    """Whether the sizes keep their sign and half their value, whichever run is left out (linearised).
+
+    Runs that know a size to no better than half of it by themselves, as when one run alone goes to the end of the
+    stroke, say nothing against it.
+    """
     A, e, ridge = _parts(base, h)
     p, normal = len(base.names), A.T @ A
     sizes = [k for k, c in enumerate(h.coordinates) if c.is_size and not c.logarithmic]
@@ -82,11 +87,11 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
         return True
     u = h.u[sizes]
     for own in _folds(base.evidence):
-        left = normal - A[own].T @ A[own] + np.diag(ridge)
-        shift = np.linalg.solve(left, A[own].T @ e[own])[p:][
-            sizes
-        ]  # the other runs' optimum: their gradient is minus it
-        if float(u @ (u + shift)) < 0.5 * float(u @ u):
+        inverse = np.linalg.inv(normal - A[own].T @ A[own] + np.diag(ridge))
+        # the other runs' optimum: their gradient is minus that of those left out
+        shift, covariance = (inverse @ A[own].T @ e[own])[p:][sizes], inverse[p:, p:][np.ix_(sizes, sizes)]
+        known = float(u @ covariance @ u) < (KNOWN * float(u @ u)) ** 2
+        if known and float(u @ (u + shift)) < 0.5 * float(u @ u):
             return False
     return True
 

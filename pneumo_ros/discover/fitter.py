@@ -24,6 +24,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
+KNOWN, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
 STEP = 0.005  # of a prior, or of what is usual of an effect
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -42,7 +43,7 @@ class Fitter:
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
 
     def known(self, model: Model) -> Known:
-        """What is known of the free parameters of `model`: the start's within 5 %, of added effects hardly anything."""
+        """Of the free parameters of `model`, what is known: the start's to a few per cent, added ones hardly."""
         names, centre, prior, step = [], [], [], []
         for name in default_free(model):
             section, _, _key = name.partition(".")
@@ -50,7 +51,7 @@ class Fitter:
                 continue
             if section in self.start.effects:
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))
-                middle, width, usual = self.start[name], 0.05 * size, 0.05 * size
+                middle, width, usual = self.start[name], KNOWN * size, USUAL * size
             else:
                 c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
                 middle, usual = _usual(c, model[name])

@@ -126,10 +126,14 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
 
 
 def _distance(c: Coordinate, u: float) -> float:
-    """How far from neutral, in u: of a fading one, in the logarithm's own terms about its value."""
+    """How far from neutral, in u: of a fading one relative to its value, in what residuals are linear in.
+
+    A share fades itself; of a frequency it is the inverse that does.
+    """
     if c.logarithmic:
         assert c.neutral is not None
-        return 1.0 - c.value(u) / c.neutral  # d(1/value) relative: what fades is 1 / value
+        left = c.value(u) / c.neutral
+        return 1.0 / left - 1.0 if c.unit == "1" else 1.0 - left
     return u
 
 

@@ -18,7 +18,7 @@ from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.prediction import pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
 from pneumo_ros.discover.rivals import rivals, simplest
-from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
+from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist
 from pneumo_ros.discover.slip_trials import POOR, as_trial, blind, try_candidates
 from pneumo_ros.discover.slips import errors, polished, slips
 from pneumo_ros.discover.steps import Found, Step
@@ -175,7 +175,7 @@ class Search:
         first = base.model.effects == self.start.effects
         trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
         good = [trial.name for trial in trials if not trial.objections]
-        relieving = followed(self.fitter, base, screened, STRAINED + nothing.relief, good)
+        relieving = followed(self.fitter, base, screened, nothing.relief, good)
         return trials + put_on_trial(base, held, *relieving, nothing, first)
 
     def worst(self, base: BaseFit) -> BaseFit:

@@ -14,25 +14,31 @@ from pneumo_ros.discover.basefit import relief_of, strain
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
+from pneumo_ros.discover.screening import STRAINED
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-TRIED = 2
+TRIED, PART = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
 FEW = 3  # parameters: a profile can stand in for anything
 ITERATIONS = 12
 
 
 def followed(
-    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], least: float, known: Sequence[str]
+    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], anyway: float, known: Sequence[str]
 ) -> tuple[list[Hypothesis], list[Array]]:
-    """Effects that may relieve the base by more than `least`, fitted with all of it, and their held-out residuals.
+    """Effects that relieve a strained base in a linear step, fitted with all of it, and their held-out residuals.
 
-    What is `known` to be good is not followed. Without strain there are none: no base regains more than it is strained.
+    What is `known` to be good is not followed. A step sees but the beginning of the valley: it has to regain a part of
+    the strain only, beyond what the base regains `anyway`.
     """
+    strained = strain(base.offset)
+    if strained < STRAINED:
+        return [], []
     best: dict[str, Hypothesis] = {}
     for h in sorted(screened, key=lambda h: -h.relief):
-        if h.relief > least and len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates):
+        simple = len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates)
+        if simple and h.relief > anyway + PART * strained:
             best.setdefault(h.name, h)
     chosen = [h for h in list(best.values())[:TRIED] if h.name not in known]
     models = [fitter.refit(fitter.extended(base.model, h), ITERATIONS) for h in chosen]

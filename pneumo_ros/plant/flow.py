@@ -20,6 +20,7 @@ class FlowWriter:
         self.resolver, self.book = resolver, book
         self.lines: list[str] = []
         self._done: dict[str, str] = {}  # signal or der_/rate_ name -> variable or literal
+        self._stages: dict[tuple[str, int], str] = {}  # single signal, how often rewritten -> variable or literal
         self._called: set[tuple[str, str]] = set()
         self._open: list[str] = []
 
@@ -64,20 +65,27 @@ class FlowWriter:
         return name
 
     def _single(self, name: str, writers: list[tuple[type[Effect], str]]) -> str:
-        changes = [w for w in writers if name in w[0].functions[w[1]].reads]
-        origins = [w for w in writers if w not in changes]
+        origins = [writer for writer in writers if writer not in self._changes(name)]
         if len(origins) > 1:
             raise UsageError(
                 f"effects {' and '.join(w.name for w, _ in origins)} both set {name}; leave one of them out"
             )
-        for origin in origins:
-            self._call(*origin)
-        value = f"{origins[0][0].name}__{name}" if origins else self._default(name)
-        for change in changes:
-            self._done[name] = value
-            self._call(*change)
-            value = f"{change[0].name}__{name}"
-        return value
+        return self._after(name, len(self._changes(name)))
+
+    def _changes(self, name: str) -> list[tuple[type[Effect], str]]:
+        """Those who rewrite a signal: they read it and return it."""
+        return [w for w in self.resolver.writers.get(name, []) if name in w[0].functions[w[1]].reads]
+
+    def _after(self, name: str, count: int) -> str:
+        """Variable that holds a single signal after the first `count` of those who rewrite it."""
+        if (name, count) not in self._stages:
+            changes = self._changes(name)
+            origins = [w for w in self.resolver.writers.get(name, []) if w not in changes]
+            writers = [changes[count - 1]] if count else origins
+            for writer in writers:
+                self._call(*writer)
+            self._stages[name, count] = f"{writers[0][0].name}__{name}" if writers else self._default(name)
+        return self._stages[name, count]
 
     def _default(self, name: str) -> str:
         """Emit the default expression of a single signal with every name in it resolved."""
@@ -101,13 +109,18 @@ class FlowWriter:
         if (effect.name, function) in self._called:
             return
         data = effect.functions[function]
-        arguments = ", ".join(self.value(name, effect) for name in data.reads)
-        if (effect.name, function) in self._called:  # meanwhile, to rewrite a signal that it reads
-            return
+        arguments = ", ".join(self._argument(name, effect, function) for name in data.reads)
         self._called.add((effect.name, function))
         called = self.book.add(data, f"{effect.name}__{function}", f"effect {effect.name}")
         targets = ", ".join(f"{effect.name}__{name}" for name in data.writes)
         self.lines.append(f"{targets} = {called}({arguments})")
+
+    def _argument(self, name: str, effect: type[Effect], function: str) -> str:
+        """Variable of an argument: of a signal that the function rewrites, what those before it made of it."""
+        changes = self._changes(name) if name in effect.functions[function].writes and name in SIGNALS else []
+        if (effect, function) in changes:
+            return self._after(name, changes.index((effect, function)))
+        return self.value(name, effect)
 
     def advance(self, effect: type[Effect]) -> None:
         """Write the once-per-step function of an effect, assigning its states."""

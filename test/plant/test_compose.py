@@ -40,6 +40,15 @@ def test_singles_are_rewritten_in_the_order_listed(tmp_path: Path) -> None:
     assert seen(composed(tmp_path, body, "other", "own"), "opening", 1.0) == pytest.approx(2.0 * (1.0 + 1.0) - 0.78)
 
 
+def test_effects_that_rewrite_the_same_two_signals_meet_in_both(tmp_path: Path) -> None:
+    both = "p_a_measured, p_b_measured"
+    body = one(both, "p_a_measured = 2.0 * p_a_measured", "p_b_measured = 3.0 * p_b_measured", f"return {both}")
+    lines = ("p_a_measured = p_a_measured + 1.0", "p_b_measured = p_b_measured + 4.0")
+    model = composed(tmp_path, body + one(both, *lines, f"return {both}", name="Other"), "own", "other")
+    assert seen(model, "p_a_measured", p_a=2e5) == 2.0 * 2e5 + 1.0
+    assert seen(model, "p_b_measured", p_b=3e5) == 3.0 * 3e5 + 4.0
+
+
 def test_an_effect_that_rewrites_one_signal_and_adds_to_another_runs_once(tmp_path: Path) -> None:
     """It is asked for its force first, and meets its own result on the way."""
     body = one("stribeck", "stribeck = 0.5 * stribeck", "force = 8.0 * stribeck", "return stribeck, force")

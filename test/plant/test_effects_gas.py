@@ -71,7 +71,7 @@ def test_volume_taken_away_leaves_a_tenth_at_the_end_of_the_stroke() -> None:
 
 @pytest.mark.parametrize("end", [1.0, -1.0])
 def test_cushion_throttles_what_leaves_the_small_chamber_and_nothing_else(end: float) -> None:
-    model, bare = in_python(chambers("cushioning", depth=0.9, length=0.02)), in_python(AXIS)
+    model, bare = in_python(chambers("cushioning", remaining=0.1, length=0.02)), in_python(AXIS)
 
     def factors(distance: float, voltage: float) -> list[float]:
         state = {"y": end * (1.0 - distance), "p_a": 3e5, "p_b": 4e5}

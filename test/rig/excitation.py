@@ -79,13 +79,13 @@ def creep(rng: Rng, seconds: float = 20.0) -> Programme:
     return Programme(np.zeros_like(time), start + np.cumsum(rate) * SAMPLE, start, _START_PRESSURE, _LIMIT)
 
 
-def ends(rng: Rng, seconds: float = 30.0) -> Programme:
+def ends(rng: Rng, seconds: float = 48.0) -> Programme:
     """From end to end at 1.5 to 4 V, held against the end for a while."""
     time, change, level = _time(seconds), 0.0, rng.choice([-1.0, 1.0])
     voltage = np.empty_like(time)
     for k, t in enumerate(time):
         if t >= change:
-            change, level = t + rng.uniform(9.0, 12.0), -np.sign(level) * rng.uniform(1.5, 4.0)
+            change, level = t + rng.uniform(15.0, 18.0), -np.sign(level) * rng.uniform(1.5, 4.0)
         voltage[k] = level
     return _open_loop(voltage, -0.5 * np.sign(voltage[0]), limit=_NO_LIMIT)
 

@@ -4,20 +4,20 @@ from pneumo_ros.plant.effect import Effect, Parameter
 
 
 class Cushioning(Effect):
-    """Near an end the air leaves through a throttle alone: outflow of the shrinking chamber falls to 1 - depth.
+    """Near an end the air leaves through a throttle alone: outflow of the shrinking chamber falls to what remains.
 
     The cushion closes over the first fifth of its length; what flows in passes its check valve.
     """
 
-    depth = Parameter(0.95, "1", "share of the exhaust conductance that the cushion shuts", 0.0, 0.999, neutral=0.0)
+    remaining = Parameter(0.05, "1", "share of the exhaust conductance that the cushion leaves", 1e-4, 1.0, neutral=1.0)
     length = Parameter(0.02, "m", "length of the cushion", low=1e-4, high=1.0)
 
     source = "Beater 2007, Pneumatic Drives (end-position cushioning)"
     signature = "a spike of back pressure near the ends"
 
-    def equations(y, port_flow_a, port_flow_b, stroke, depth, length):
+    def equations(y, port_flow_a, port_flow_b, stroke, remaining, length):
         shut_a = min(max((length - 0.5 * stroke - y) / (0.2 * length), 0.0), 1.0)
         shut_b = min(max((length - 0.5 * stroke + y) / (0.2 * length), 0.0), 1.0)
-        port_flow_a = port_flow_a * (1.0 - depth * shut_a if port_flow_a < 0.0 else 1.0)
-        port_flow_b = port_flow_b * (1.0 - depth * shut_b if port_flow_b < 0.0 else 1.0)
+        port_flow_a = port_flow_a * (1.0 - (1.0 - remaining) * shut_a if port_flow_a < 0.0 else 1.0)
+        port_flow_b = port_flow_b * (1.0 - (1.0 - remaining) * shut_b if port_flow_b < 0.0 else 1.0)
         return port_flow_a, port_flow_b
