@@ -111,7 +111,4 @@ def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
 
 def _moved(effect: tuple[Coordinate, ...], u: Array, which: list[int], factor: float) -> Array:
     """u with some coordinates at that many times their usual value, as far as is allowed."""
-    new = u.copy()
-    for k in which:
-        new[k] = effect[k].clip(np.log(factor))
-    return new
+    return np.array([effect[k].clip(np.log(factor)) if k in which else x for k, x in enumerate(u)])

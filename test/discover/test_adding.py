@@ -59,7 +59,7 @@ def test_the_rigs_load_is_fitted_and_pays_on_a_run_held_out() -> None:
 def test_what_the_model_has_is_estimated_against_what_was_known() -> None:
     one = added().estimates["lugre_friction.static_friction"]
     assert one.before == load_model()["lugre_friction.static_friction"]
-    assert one.prior == pytest.approx(0.05 * one.before)
+    assert one.prior == pytest.approx(0.03 * one.before)
 
 
 def test_segments_hold_the_breakaways() -> None:
