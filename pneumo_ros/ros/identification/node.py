@@ -72,7 +72,8 @@ class Identification(AxisNode):
             {
                 "machine": self.start_model.as_dict(), "name": self.start_model.name,
                 "files": [str(path) for path in self._files], "bags": [str(path) for path in self._used],
-                "axis": self.parameters["axis"], "whole_model": self.parameters["whole_model"],
+                "axis": self.parameters["axis"], "joint_name": self.parameters["joint_name"],
+                "whole_model": self.parameters["whole_model"],
             }
         )  # fmt: skip
 

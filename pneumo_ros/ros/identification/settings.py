@@ -6,6 +6,7 @@ SETTINGS = (
     Setting("bags", [""], "recordings of constant-voltage runs"),
     Setting("folder", "", "folder to watch for more of them, itself or one folder deeper"),
     Setting("axis", "", "namespace of the axis, where a recording holds several"),
+    Setting("joint_name", "", "joint of the axis, where a recording holds several and none is called piston"),
     Setting("model", "axis", "machine file, or name of a shipped one, to start from", live=False),
     Setting("output", "identified", "folder for machine files; each gets a number of its own", live=False),
     Setting("auto", True, "identify as recordings arrive; otherwise only on ~/identify"),

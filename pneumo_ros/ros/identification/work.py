@@ -60,14 +60,15 @@ def plain(value: Any) -> Any:
 
 
 def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
-    """The result of a job: `machine` and `name` of the model, `files` with effects, `bags`, `axis`, `whole_model`.
+    """The result of a job: `machine` and `name` of the model, `files` with effects, `bags`, `whole_model`.
 
-    Raises DataError when no recording can be used, and what identification raises.
+    `axis` and `joint_name` choose in recordings of several, else they are empty. Raises DataError when no
+    recording can be used, and what identification raises.
     """
     begun = time.monotonic()
     parts = PARTS_WITH_REFIT if job["whole_model"] else PARTS
     model = model_from_dict(job["machine"], job["name"], Library(job["files"]))
-    runs, refused = read(job["bags"], job["axis"] or None, report, report.part(*parts[0:2]))
+    runs, refused = read(job["bags"], job["axis"], job["joint_name"], report, report.part(*parts[0:2]))
     found = identify(model, runs, progress=report.part(*parts[1:3]))
     result = summary(found, runs) | {"refused_recordings": refused, "recordings": [run.name for run in runs]}
     after: Model = found.model
@@ -79,14 +80,14 @@ def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
 
 
 def read(
-    paths: Sequence[str], axis: str | None, report: Report, progress: Callable[[float, str], None]
+    paths: Sequence[str], axis: str, joint_name: str, report: Report, progress: Callable[[float, str], None]
 ) -> tuple[list[Run], dict[str, str]]:
     """Runs, and by path the reasons why others are refused; runs of the same name are told apart by their paths."""
     runs, refused = dict[str, Run](), dict[str, str]()
     for done, path in enumerate(paths):
         progress(done / len(paths), "reading recordings")
         try:
-            recording = read_recording(path, axis)
+            recording = read_recording(path, axis or None, joint_name or None)
             runs[path] = make_run(recording)
         except PneumoError as error:
             refused[path] = str(error)
