@@ -7,44 +7,23 @@ They are those of `identify.equations`; each comes with the noise that the senso
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs
 
-from pneumo_ros.discover.course import Frame, follow, follow_each, frame_of
-from pneumo_ros.identify.breakaway import REST, Breakaway, find_breakaways
-from pneumo_ros.identify.bump import Bump
-from pneumo_ros.identify.equations import Chamber, Momentum, measured_throughout
+from pneumo_ros.discover.course import follow_each, frame_of
+from pneumo_ros.discover.families import Family, families
+from pneumo_ros.identify.breakaway import REST
+from pneumo_ros.identify.equations import Chamber, Momentum
 from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-WINDOWS = {"momentum": (0.1, 0.04), "chamber_a": (0.2, 0.04), "chamber_b": (0.2, 0.04)}  # s
 BLOCK = 0.4  # s: errors within a block belong together
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
-
-
-@dataclass(frozen=True)
-class Family:
-    """Windows of one equation and width in one run; arrays (windows,)."""
-
-    equation: str
-    width: float  # s; 0 for breakaways
-    run: int
-    time: Array
-    noise: Array
-    usable: NDArray[np.bool_] = field(repr=False)
-    bump: Bump | None = field(repr=False, default=None)
-    breakaways: tuple[Breakaway, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """As `momentum 40 ms`, `breakaway`."""
-        return f"{self.equation} {1e3 * self.width:.0f} ms" if self.width else self.equation
 
 
 class Evidence:
@@ -98,7 +77,7 @@ class Course:
     def __init__(self, model: Model, run: Run, index: int) -> None:
         check_position(model, run)
         self.run, self.frame = run, frame_of(run, model.force_driven)
-        self.families = _families(model, self.frame, index)
+        self.families = families(model, self.frame, index)
         self.held = np.append(run.held, run.held[-1])
         self.drive = self.held if model.force_driven else model.effort(self.frame.states)
         last = self.families[-1]
@@ -139,14 +118,14 @@ class Course:
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
     def _momentum(self, model: Model, q: Array, states: Array, claimed: Array, family: Family) -> Array:
-        bump = _bump(family)
+        bump = family.window
         rows = bump.centres(len(states))
         mass = model["piston.mass"] + self._see(model, q, states[rows], rows)["added_mass"]
         return Momentum.value(bump, mass, states[:, 0], claimed[:, 0])
 
     def _chamber(self, model: Model, states: Array, claimed: Array, family: Family) -> Array:
         equation = Chamber(model, family.equation[-1])
-        return equation.value(_bump(family), states, claimed[:, equation.column - 1])
+        return equation.value(family.window, states, claimed[:, equation.column - 1])
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed there and then."""
@@ -162,34 +141,3 @@ class Course:
         there = states[self.rested].copy()
         there[:, 1] = self.direction * _CREEP
         return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])
-
-
-def _bump(family: Family) -> Bump:
-    assert family.bump is not None
-    return family.bump
-
-
-def _families(model: Model, frame: Frame, index: int) -> list[Family]:
-    run, (states, claimed) = frame.run, follow(model, frame)
-    found, momentum = [], Momentum(model, run, states)
-    for width in WINDOWS["momentum"]:
-        bump = Bump.of(width, run.sample_time)
-        found.append(_family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump)))
-    for chamber in "" if model.force_driven else "ab":
-        equation = Chamber(model, chamber)
-        rate, steep = claimed[:, equation.column], equation.steepness(run, states)
-        for width in WINDOWS[f"chamber_{chamber}"]:
-            bump = Bump.of(width, run.sample_time)
-            noise = equation.noise(bump, run, states, rate, steep)
-            found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
-    breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
-    spread = np.array([b.spread for b in breakaways])
-    time = np.array([b.time for b in breakaways])
-    found.append(Family("breakaway", 0.0, index, time, spread, np.ones(len(time), dtype=bool), None, breakaways))
-    return found
-
-
-def _family(
-    equation: str, width: float, index: int, run: Run, bump: Bump, noise: Array, usable: NDArray[np.bool_]
-) -> Family:
-    return Family(equation, width, index, bump.apply(bump.phi, run.time), noise, usable, bump)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import unaided
-from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
@@ -19,8 +18,8 @@ from pneumo_ros.discover.prediction import pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
 from pneumo_ros.discover.rivals import rivals, simplest
 from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist
-from pneumo_ros.discover.slip_trials import POOR, as_trial, blind, try_candidates
-from pneumo_ros.discover.slips import errors, polished, slips
+from pneumo_ros.discover.slip_trials import longer
+from pneumo_ros.discover.slips import polished, slips, with_values_of
 from pneumo_ros.discover.steps import Found, Step
 from pneumo_ros.discover.strain import followed
 from pneumo_ros.discover.trial import Trial
@@ -76,10 +75,10 @@ class Search:
                 steps.append(step)
                 model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
-            longer, last = self.slip_round(model, screened)
-            if last is not None and last.added is not None and pays(before, self.predicted(longer)):
-                steps[-1:] = [last, replace(steps[-1], model=longer)]
-                model = longer
+            new, last = self.slip_round(model, screened)
+            if last is not None and last.added is not None and pays(before, self.predicted(new)):
+                steps[-1:] = [last, replace(steps[-1], model=new)]
+                model = new
             base, model = self.settled(base), self.settled(model)
         except KeyboardInterrupt:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
@@ -122,21 +121,8 @@ class Search:
         made = self.slips(model)
         if made is None or self.left > TEXTURE * self.held.drive:
             return model, None
-        alone, found = made
-        known = self.fitter.deviations(model)
-        train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
-        if max(np.median(train), (usual := float(np.median(held)))) < POOR:
-            return model, None
-        tried = try_candidates(alone, found, blind(screened, alone), known, held)
         first = model.effects == self.start.effects
-        trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, first) for c in tried]
-        good = [t for t in trials if not t.objections]
-        best = good[0] if good else None
-        step = Step(model, tuple(trials), best, (), {"slip": usual}, {"slip": usual})
-        if best is not None:
-            chosen = next(c for c in tried if c.name == best.name)
-            model = with_values_of(model.with_effects([*model.effects, best.name]), chosen.model)
-        return model, step
+        return longer(model, made, screened, self.fitter.deviations(model), first)
 
     def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
@@ -189,11 +175,6 @@ class Search:
                 left -= float(e.runs[i].time[-1])
         part, rows = e.only(runs)
         return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
-
-
-def with_values_of(model: Model, other: Model) -> Model:
-    """The model with all parameters that `other` has at its values."""
-    return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

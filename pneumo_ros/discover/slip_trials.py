@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import moves
-from pneumo_ros.discover.slips import FEW, Slips, errors, friction_priors
+from pneumo_ros.discover.slips import FEW, Slips, errors, friction_priors, with_values_of
+from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.identify.estimates import Refit
 from pneumo_ros.identify.refit import refit_segments
@@ -35,6 +36,27 @@ class Slipping:
     train: Array
     held: Array
     std: dict[str, float]  # of its parameters
+
+
+def longer(
+    model: Model, made: tuple[Model, Slips], screened: Sequence[Hypothesis], known: dict[str, float], first: bool
+) -> tuple[Model, Step | None]:
+    """The model with the effect that its breakaways and reversals ask for, and the trials; None where they are fine.
+
+    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `first`: nothing was added.
+    """
+    alone, found = made
+    train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
+    if max(np.median(train), (usual := float(np.median(held)))) < POOR:
+        return model, None
+    tried = try_candidates(alone, found, blind(screened, alone), known, held)
+    trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, first) for c in tried]
+    good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
+    step = Step(model, tuple(trials), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
+    if good:
+        chosen = good[0][0]
+        model = with_values_of(model.with_effects([*model.effects, chosen.name]), chosen.model)
+    return model, step
 
 
 def try_candidates(

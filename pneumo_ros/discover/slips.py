@@ -58,6 +58,11 @@ def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Mode
     return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST else None
 
 
+def with_values_of(model: Model, other: Model) -> Model:
+    """The model with all parameters that `other` has at its values."""
+    return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
+
+
 def errors(model: Model, segments: Segments) -> Array:
     """Mean squared error per sample over the noise's (events,), robust, every start fitted."""
     x = fit_starts(model, segments)
