@@ -16,7 +16,7 @@ from pneumo_ros.discover.hypothesis import (
     wald,
     weights,
 )
-from pneumo_ros.discover.measures import advantage, explained, force, gains
+from pneumo_ros.discover.measures import acting, advantage, explained, force, gains
 from pneumo_ros.discover.trial import T_LEAST, Trial
 
 Array = NDArray[np.float64]
@@ -42,15 +42,17 @@ def put_on_trial(
     rng, found = np.random.default_rng(0), []
     reference = nothing.likelihood + log_likelihood(held.evidence, held.residual)
     for h, r in zip(hypotheses, residuals, strict=True):
+        there = acting(held.residual, r)
         found.append(
             Trial(
                 hypothesis=replace(h, relief=h.relief - nothing.relief),
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
+                local=max(gains(held.evidence, held.residual, r, there).values(), default=0.0),
                 z=advantage(held.evidence, held.residual, r)[1],
                 size=magnitude(h),
                 stable=stable(base, h),
-                share=explained(held.evidence, held.residual, r),
+                share=explained(held.evidence, held.residual, r, there),
                 first=first,
                 decoy=decoy(base, h, rng) if h.t >= T_LEAST else 0.0,
                 score=h.likelihood + log_likelihood(held.evidence, r) - reference,

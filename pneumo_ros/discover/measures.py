@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import OVERLAP, family_scales, huber
+from pneumo_ros.discover.hypothesis import FLOOR, OVERLAP, family_scales, huber, robust_scale
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
 
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
+ACTS, FEWEST = 0.25, 30  # noise deviations that an effect changes a residual by where it acts, and windows that ask for
 NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
 
@@ -31,27 +33,37 @@ def force(evidence: Evidence, before: Array, after: Array) -> float:
     return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
 
 
-def mean_squares(evidence: Evidence, residual: Array) -> dict[str, float]:
-    """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's."""
-    scale = family_scales(evidence, residual)
+def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) -> dict[str, float]:
+    """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's.
+
+    Of all windows, or of those in `rows` (residuals,), whose families have thirty of them.
+    """
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
-        if (evidence.family == k).any():
-            found.setdefault(equation_of(name), []).append(float(scale[k] ** 2))
+        own = evidence.family == k if rows is None else rows & (evidence.family == k)
+        if own.sum() >= (1 if rows is None else FEWEST):
+            scale = max(robust_scale(np.abs(residual[own])), FLOOR.get(name, 1.0))
+            found.setdefault(equation_of(name), []).append(scale**2)
     return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
 
 
-def gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
+def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> dict[str, float]:
     """By equation, the share of the mean square residual that `after` lacks against `before`."""
-    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
     return {name: 1.0 - second[name] / first[name] for name in first}
 
 
-def explained(evidence: Evidence, before: Array, after: Array) -> float:
+def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
     """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
-    first, second = mean_squares(evidence, before), mean_squares(evidence, after)
+    first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
     noise = {name: NOISE.get(name, 1.0) for name in first}
-    return max((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+    shares = ((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+    return max(shares, default=0.0)
+
+
+def acting(before: Array, after: Array) -> Rows:
+    """Where an effect acts (residuals,): a leak of the closed valve must not drown in what happens while it is open."""
+    return np.asarray(np.abs(before - after) > ACTS)
 
 
 def excess(evidence: Evidence, residual: Array) -> dict[str, float]:

@@ -33,10 +33,11 @@ class Trial:
     z: float  # of the loss it removes there, over its scatter between blocks
     size: float  # in usual ones
     stable: bool
-    share: float  # of what noise does not explain in the equation it helps most, on held-out runs
+    share: float  # of what noise does not explain where it acts in the equation it helps most, on held-out runs
     first: bool  # whether nothing was added before
     decoy: float  # the largest t that a copy of its trace shifted in time reaches
     score: float  # log likelihood over the base, training and held-out runs together
+    local: float = -np.inf  # the largest gain of an equation where the effect acts in it
     force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
@@ -64,7 +65,7 @@ class Trial:
 
     def _data_objections(self) -> list[str]:
         """What the recordings say against it."""
-        h, found, most = self.hypothesis, list[str](), max(self.gain.values(), default=0.0)
+        h, found, most = self.hypothesis, list[str](), max(self.local, *self.gain.values())
         if h.t < T_LEAST:
             found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
         elif h.t < 1.5 * self.decoy and self.share < PLAIN:

@@ -44,6 +44,17 @@ def test_shapes_are_tried_larger_and_smaller() -> None:
     assert coordinates(MODEL.library.find("rod_atmospheric_force")) == ()
 
 
+def test_frequencies_are_tried_finely_with_much_damping() -> None:
+    share, frequency, damping = MISSING["load_compliance"]
+    tried = [u for u in starts(MISSING["load_compliance"]) if damping.value(u[2]) == pytest.approx(0.2)]
+    hertz = np.sort([frequency.value(u[1]) for u in tried if frequency.value(u[1]) != 20.0])
+    assert hertz[0] < 5.0
+    assert hertz[-1] > 60.0
+    assert np.all(hertz[1:] / hertz[:-1] < 1.6)
+    assert not share.tuned
+    assert not damping.tuned
+
+
 def test_one_model_holds_all_candidates_each_neutral() -> None:
     whole = everything(MODEL, MISSING)
     assert set(whole.effects) == {*MODEL.effects, *MISSING}

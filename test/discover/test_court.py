@@ -1,0 +1,47 @@
+"""Whether a size is stable over runs left out."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from pneumo_ros.discover.coordinates import coordinates
+from pneumo_ros.discover.court import stable
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.plant import load_model
+
+MODEL = load_model("axis")
+LOAD = coordinates(MODEL.library.find("constant_load"))
+RUNS, EACH = 4, 200
+RUN = np.repeat(np.arange(RUNS), EACH)
+
+
+def fitted(slope: list[float], truth: list[float]) -> tuple[BaseFit, Hypothesis]:
+    """A load fitted to four runs that feel it by `slope` each, and in which it is `truth` each."""
+    rng = np.random.default_rng(0)
+    C, y = np.array(slope)[RUN], np.array(truth)[RUN]
+    residual = C * y + rng.normal(size=len(RUN))
+    u = float(C @ residual / (C @ C))
+    names, family = ("momentum 100 ms",), np.zeros(len(RUN), dtype=np.int64)
+    evidence = SimpleNamespace(
+        names=names, family=family, run=RUN, runs=tuple(SimpleNamespace(time=np.zeros(1)) for _ in range(RUNS))
+    )
+    none = np.empty((len(RUN), 0))
+    base = BaseFit(MODEL, MODEL, (), np.empty(0), np.empty(0), cast(Evidence, evidence), residual, none)
+    h = Hypothesis("constant_load", LOAD, np.array([u]), np.empty(0), residual - C * u, slopes=-C[:, None])
+    return base, h
+
+
+@pytest.mark.parametrize(
+    ("slope", "truth", "expected"),
+    [
+        ([1.0] * 4, [2.0] * 4, True),
+        ([1.0, 1.0, 1.0, 9.0], [0.0, 0.0, 0.0, 2.0], False),  # three runs know it well, and it is not there
+        ([0.0, 0.0, 0.0, 9.0], [2.0] * 4, True),  # one run alone goes where it acts
+        ([0.01, 0.01, 0.01, 9.0], [0.0, 0.0, 0.0, 2.0], True),  # the others hardly feel it
+    ],
+)
+def test_runs_speak_against_a_size_that_they_know(slope: list[float], truth: list[float], expected: bool) -> None:
+    assert stable(*fitted(slope, truth)) is expected

@@ -1,0 +1,41 @@
+"""What an effect removes, measured where it acts."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.measures import FEWEST, acting, explained, gains
+
+N, HERE = 4000, 200  # windows, and those in which the effect acts
+NOISE = np.random.default_rng(0).normal(size=N)
+EVIDENCE = cast(Evidence, SimpleNamespace(names=("chamber_a 200 ms",), family=np.zeros(N, dtype=np.int64)))
+
+
+def effect(windows: int = HERE, size: float = 1.5) -> np.ndarray:
+    """What the effect adds to the residual: hundreds of windows in a row, and hardly anything elsewhere."""
+    added = np.full(N, 0.01)
+    added[1000 : 1000 + windows] = size
+    return added
+
+
+def test_a_rare_effect_counts_where_it_acts() -> None:
+    before = NOISE + effect()
+    there = acting(before, NOISE)
+    assert there.sum() == HERE
+    assert gains(EVIDENCE, before, NOISE)["chamber_a"] < 0.12
+    assert gains(EVIDENCE, before, NOISE, there)["chamber_a"] == pytest.approx(1.5**2 / (1.0 + 1.5**2), abs=0.1)
+    assert explained(EVIDENCE, before, NOISE, there) > 0.8
+
+
+def test_what_acts_but_explains_nothing_gains_nothing() -> None:
+    wrong = NOISE - effect()  # the machine has no such effect
+    assert gains(EVIDENCE, NOISE, wrong, acting(NOISE, wrong))["chamber_a"] < 0.0
+
+
+def test_a_few_windows_say_nothing() -> None:
+    before = NOISE + effect(FEWEST - 1)
+    assert gains(EVIDENCE, before, NOISE, acting(before, NOISE)) == {}
+    assert explained(EVIDENCE, before, NOISE, acting(before, NOISE)) == 0.0
