@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import (
     BaseFit,
@@ -18,6 +19,7 @@ from pneumo_ros.discover.hypothesis import (
 )
 from pneumo_ros.discover.measures import acting, advantage, explained, force, gains
 from pneumo_ros.discover.trial import T_LEAST, Trial
+from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
@@ -50,7 +52,7 @@ def put_on_trial(
                 gain=gains(held.evidence, held.residual, r),
                 local=max(gains(held.evidence, held.residual, r, there).values(), default=0.0),
                 z=advantage(held.evidence, held.residual, r)[1],
-                size=magnitude(h),
+                size=magnitude(h.coordinates, h.u),
                 stable=stable(base, h),
                 share=explained(held.evidence, held.residual, r, there),
                 first=first,
@@ -63,10 +65,10 @@ def put_on_trial(
     return sorted(found, key=lambda trial: -trial.score)
 
 
-def magnitude(h: Hypothesis) -> float:
-    """Largest size of a hypothesis in usual ones."""
+def magnitude(own: Sequence[Coordinate], at: Array) -> float:
+    """Largest size of an effect in usual ones; at (own,): where it is in its coordinates."""
     found = [0.0]
-    for c, u in zip(h.coordinates, h.u, strict=True):
+    for c, u in zip(own, at, strict=True):
         if c.is_size:
             value = c.value(float(u))
             if c.logarithmic:
@@ -74,6 +76,12 @@ def magnitude(h: Hypothesis) -> float:
             else:
                 found.append(abs(float(u)))
     return max(found)
+
+
+def size_in(model: Model, name: str) -> float:
+    """Of an effect of the model, in usual ones."""
+    own = coordinates(model.library.find(name))
+    return magnitude(own, np.array([c.u(model[c.name]) for c in own]))
 
 
 def stable(base: BaseFit, h: Hypothesis) -> bool:

@@ -53,7 +53,8 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     values = search.fitter.deviations(found.model)
     added = tuple(
         _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
-        for k, step in enumerate(s for s in found.steps if s.added)
+        for k, step in enumerate(found.steps)
+        if step.added
     )
     before, after = comparisons[1], comparisons[len(models) - 1]
     unexplained = remains(before, after)
@@ -81,7 +82,9 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
 def _label(models: Sequence[Model], k: int) -> str:
     if k < 2:
         return ("as given", "refitted")[k]
-    return "+ " + ", ".join(e for e in models[k].effects if e not in models[k - 1].effects)
+    now, before = models[k].effects, models[k - 1].effects
+    changes = ["+ " + ", ".join(e for e in now if e not in before), "- " + ", ".join(e for e in before if e not in now)]
+    return ", ".join(change for change in changes if len(change) > 2)
 
 
 def signal_errors(comparison: Comparison) -> dict[str, float]:

@@ -8,32 +8,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import unaided
-from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining
+from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining, size_in
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
-from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales, huber
+from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.discover.measures import excess, force
 from pneumo_ros.discover.polishing import polish
 from pneumo_ros.discover.prediction import pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
 from pneumo_ros.discover.rivals import rivals, simplest
-from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist
+from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
 from pneumo_ros.discover.slip_trials import longer
 from pneumo_ros.discover.slips import polished, slips, with_values_of
-from pneumo_ros.discover.steps import Found, Step
+from pneumo_ros.discover.steps import Found, Step, without
 from pneumo_ros.discover.strain import followed
-from pneumo_ros.discover.trial import Trial
+from pneumo_ros.discover.trial import MATERIAL, Trial
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
-SCREENED = 50.0  # s of recordings by which candidates are ranked first
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
 EXPLAINED = 0.8  # share of what noise does not explain in an equation
 MOST = 4  # effects added
+VANISHED = "nothing of it is left beside what was added since"
 
 
 class Search:
@@ -67,12 +67,13 @@ class Search:
                     steps.append(replace(step, added=None))
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                new = self.polish(self.fitter.refit(self.fitter.extended(model, step.added.hypothesis)))
+                new, gone = self.extended(model, step.added)
                 after = self.predicted(new)
-                if not self.beyond_doubt(step.added) and not pays(before, after):
+                if step.added.name in gone or not (self.beyond_doubt(step.added) or pays(before, after)):
                     banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
                     continue
-                steps.append(step)
+                banned |= dict.fromkeys(gone, VANISHED)
+                steps = [without(s, gone, VANISHED) for s in (*steps, step)]
                 model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
             new, last = self.slip_round(model, screened)
@@ -84,6 +85,14 @@ class Search:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
         return Found(base, model, tuple(steps))
+
+    def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
+        """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
+        new = self.polish(self.fitter.refit(self.fitter.extended(model, trial.hypothesis)))
+        gone = [name for name in new.effects if name not in self.start.effects and size_in(new, name) < MATERIAL]
+        if gone:
+            new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
+        return new, gone
 
     @staticmethod
     def beyond_doubt(trial: Trial) -> bool:
@@ -142,7 +151,7 @@ class Search:
 
     def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
-        part = self.worst(base)
+        part = worst(base)
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
         short = shortlist(part, bare, promising or screened[:SHOWN], SHORTLIST)
@@ -163,18 +172,6 @@ class Search:
         good = [trial.name for trial in trials if not trial.objections]
         relieving = followed(self.fitter, base, screened, nothing.relief, good)
         return trials + put_on_trial(base, held, *relieving, nothing, first)
-
-    def worst(self, base: BaseFit) -> BaseFit:
-        """The part of the training evidence where the model is worst: enough to rank by."""
-        runs, left = [], SCREENED
-        e = base.evidence
-        misfit = [float(np.mean(huber(base.residual[e.run == i]))) for i in range(len(e.runs))]
-        for i in np.argsort(misfit)[::-1]:
-            if left > 0.0:
-                runs.append(int(i))
-                left -= float(e.runs[i].time[-1])
-        part, rows = e.only(runs)
-        return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Whether a size is stable over runs left out."""
+"""Whether a size is stable over runs left out, and large enough to stand for something."""
 
 from types import SimpleNamespace
 from typing import cast
@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from pneumo_ros.discover.coordinates import coordinates
-from pneumo_ros.discover.court import stable
+from pneumo_ros.discover.court import size_in, stable
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.discover.steps import Step, without
+from pneumo_ros.discover.trial import MATERIAL, Trial
 from pneumo_ros.plant import load_model
 
 MODEL = load_model("axis")
@@ -45,3 +47,28 @@ def fitted(slope: list[float], truth: list[float]) -> tuple[BaseFit, Hypothesis]
 )
 def test_runs_speak_against_a_size_that_they_know(slope: list[float], truth: list[float], expected: bool) -> None:
     assert stable(*fitted(slope, truth)) is expected
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "material"),
+    [
+        ("pressure_sensor_offset", {"offset_a": 85.0, "offset_b": 19.0}, False),  # of a usual 5 kPa
+        ("pressure_sensor_offset", {"offset_a": 85.0, "offset_b": -900.0}, True),
+        ("valve_spool_dynamics", {"angular_frequency": 900.0}, False),  # hardly slower than the command
+        ("valve_spool_dynamics", {"angular_frequency": 300.0}, True),
+    ],
+)
+def test_sizes_are_told_in_usual_ones(effect: str, values: dict[str, float], material: bool) -> None:
+    given = {f"{effect}.{key}": value for key, value in values.items()}
+    model = MODEL.with_effects([*MODEL.effects, effect], given)
+    assert (size_in(model, effect) > MATERIAL) is material
+
+
+def test_a_round_whose_effect_vanished_says_so() -> None:
+    h = Hypothesis("constant_load", LOAD, np.array([1.0]), np.empty(0), np.empty(0), t=50.0)
+    trial = Trial(h, np.empty(0), {"momentum": 0.9}, 9.0, 1.0, True, 1.0, True, 0.0, 100.0)
+    step = Step(MODEL, (trial,), trial, (), {}, {})
+    assert without(step, ["spring_load"], "it is gone").added is trial
+    changed = without(step, ["constant_load"], "it is gone")
+    assert changed.added is None
+    assert changed.trials[0].objections == ("it is gone",)
