@@ -11,7 +11,7 @@ from pneumo_ros.identify.equations import centred
 from pneumo_ros.identify.guess import measured_frame
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
-from pneumo_ros.identify.sensors import shifted
+from pneumo_ros.identify.sensors import shifted, taken_back
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.compose import SENSED
 
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
+_SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
 _SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
 
 
@@ -67,13 +68,23 @@ def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple
     corrects = sensing(model, parameters)
     for own, shared in ((np.flatnonzero(~corrects), True), (np.flatnonzero(corrects), False)):
         for rows in (own[k : k + BLOCK] for k in range(0, len(own), BLOCK)):
-            block, given = parameters[rows], frame.states
-            for _ in range(0 if shared else 2):
-                states, _claimed = _drive_lanes(model, frame.run, given, block)
-                given = np.stack([_corrected(model, q, frame, x) for q, x in zip(block, states, strict=True)])
-            states, mean = _drive_lanes(model, frame.run, given, block)
+            states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows])
+            if not shared:
+                states, mean = _corrected(model, frame, parameters[rows], states, mean)
             for k, x, m in zip(rows, states, mean, strict=True):
                 yield int(k), x, centred(m)
+
+
+def _corrected(model: Model, frame: Frame, parameters: Array, states: Array, mean: Array) -> tuple[Array, Array]:
+    """Lanes driven anew along the measured states less what sensors do, by a fixed point of two steps at most."""
+    before: Array | float = 0.0
+    for _ in range(2):
+        shift = taken_back(model, states, parameters, frame.run)
+        if np.all(np.abs(shift - before).max(axis=(0, 1)) <= _SETTLED[: shift.shape[-1]]):
+            break
+        given = np.stack([shifted(frame.states, own, frame.run.sample_time) for own in shift])
+        (states, mean), before = _drive_lanes(model, frame.run, given, parameters), shift
+    return states, mean
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array) -> tuple[Array, Array]:
@@ -94,17 +105,6 @@ def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Ar
     step = 1.01 * run.sample_time / QUICK
     rest = model.state()[given.shape[1] :]
     return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
-
-
-def _corrected(model: Model, q: Array, frame: Frame, states: Array) -> Array:
-    """The frame's states whose observation is what was measured, by one fixed-point step."""
-    names = model.composition.observed
-    seen = np.empty((len(states), len(names)))
-    held = np.append(frame.run.held, frame.run.held[-1])
-    model.kernel.observe(np.ascontiguousarray(states), q, held, frame.run.time, seen)
-    read = {state: signal for signal, state in SENSED.items() if state in model.states}
-    shift = [states[:, model.states.index(state)] - seen[:, names.index(signal)] for state, signal in read.items()]
-    return shifted(frame.states, np.stack(shift, axis=1), frame.run.sample_time)
 
 
 def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:

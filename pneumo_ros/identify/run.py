@@ -1,6 +1,7 @@
 """A recording laid on a uniform time grid, as the integrator and the estimators want it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,17 +34,17 @@ class Run:
     def __len__(self) -> int:
         return len(self.position)
 
-    @property
+    @cached_property
     def time(self) -> Array:
         """Grid times [s]."""
         return np.asarray(np.arange(len(self)) * self.sample_time, dtype=np.float64)
 
-    @property
+    @cached_property
     def held(self) -> Array:
         """(n - 1,) input over each interval, the mean of its parts."""
         return np.asarray(self.input.reshape(-1, PARTS).mean(axis=1))
 
-    @property
+    @cached_property
     def force(self) -> Array:
         """(n - 1,) driving force [N] at the samples; meaningful when force-driven, where it is linear in between."""
         first, second = self.input[::PARTS], self.input[1::PARTS]

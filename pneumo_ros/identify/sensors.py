@@ -36,7 +36,7 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
         return states, rates
     before = np.zeros((len(frame), frame.shape[1] - 1))
     for _ in range(_ITERATIONS):
-        shift = _shift(model, states, run)
+        shift = taken_back(model, states[None], None, run)[0]
         change = np.abs(shift - before).max(axis=0)
         if not (change > np.append(_ENOUGH[0], np.full(len(change) - 1, _ENOUGH[1]))).any():
             break
@@ -47,15 +47,16 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
     return states, rates
 
 
-def _shift(model: Model, states: Array, run: Run) -> Array:
-    """What to add to the readings (n, 1 or 3) of position and pressures to get the states that were given."""
+def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:
+    """What to add to the readings (lanes, n, 1 or 3) of position and pressures to get these states (lanes, n, states).
+
+    parameters (lanes, parameters) or None, where all lanes are the model's.
+    """
     voltage = np.concatenate([run.input[:PARTS], run.input])  # row k is read under the last voltage before it
-    first = np.zeros(1, dtype=np.int64)
-    read = sense(
-        model, states[None], None, voltage, first, sample_time=run.sample_time, start=-run.sample_time, parts=PARTS
-    )
+    first, dt = np.zeros(len(states), dtype=np.int64), run.sample_time
+    read = sense(model, states, parameters, voltage, first, sample_time=dt, start=-dt, parts=PARTS)
     columns = [model.states.index(name) for name in model.composition.sensed]
-    return np.asarray(states[:, columns] - read[0])
+    return np.asarray(states[:, :, columns] - read)
 
 
 def shifted(frame: Array, shift: Array, sample_time: float) -> Array:
