@@ -76,14 +76,19 @@ def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple
 
 
 def _corrected(model: Model, frame: Frame, parameters: Array, states: Array, mean: Array) -> tuple[Array, Array]:
-    """Lanes driven anew along the measured states less what sensors do, by a fixed point of two steps at most."""
-    before: Array | float = 0.0
+    """Lanes driven anew along the measured states less what sensors do, by a fixed point of two steps at most.
+
+    Each lane stops by itself: what it gives does not depend on those beside it.
+    """
+    moving, before = np.arange(len(states)), np.zeros((len(states), 1, 1))
     for _ in range(2):
-        shift = taken_back(model, states, parameters, frame.run)
-        if np.all(np.abs(shift - before).max(axis=(0, 1)) <= _SETTLED[: shift.shape[-1]]):
+        shift = taken_back(model, states[moving], parameters[moving], frame.run)
+        still = np.any(np.abs(shift - before).max(axis=1) > _SETTLED[: shift.shape[-1]], axis=1)
+        moving, before = moving[still], shift[still]
+        if not len(moving):
             break
-        given = np.stack([shifted(frame.states, own, frame.run.sample_time) for own in shift])
-        (states, mean), before = _drive_lanes(model, frame.run, given, parameters), shift
+        given = np.stack([shifted(frame.states, own, frame.run.sample_time) for own in before])
+        states[moving], mean[moving] = _drive_lanes(model, frame.run, given, parameters[moving])
     return states, mean
 
 
