@@ -5,6 +5,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import pytest
+
 from pneumo_ros.environment import Domain
 
 TEST = Path(__file__).parent
@@ -19,3 +21,18 @@ os.environ["ROS_LOG_DIR"] = LOGS.name
 os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
 # The wheels start Python a second time to find their libraries; a Python of another environment must do so itself.
 os.environ.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
+
+# Of tests that run side by side, those with nodes or browsers in real time follow one another: they come first, in one
+# process, and what only computes goes to the other, file by file.
+REAL_TIME = ("ros", "workbench")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Say what belongs together, where tests run side by side."""
+    if not config.pluginmanager.hasplugin("xdist"):
+        return
+    folders = {item: item.path.relative_to(TEST).parts[0] for item in items}
+    items.sort(key=lambda item: folders[item] not in REAL_TIME)
+    for item in items:
+        group = "real time" if folders[item] in REAL_TIME else str(item.path)
+        item.add_marker(pytest.mark.xdist_group(group))
