@@ -18,7 +18,7 @@ SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that
 SPOILED = 0.5  # of its best gain: by no more may another equation get worse, which something else may still bend
 REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
-MATERIAL = 0.1  # of the usual size
+MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a quarter of that, still counts
 PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
 SLOW = 10.0
 
