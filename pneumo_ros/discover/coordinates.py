@@ -68,6 +68,18 @@ class Coordinate:
             return float(np.log(max(value, 1e-300) / self.typical))
         return (value - (self.neutral or 0.0)) / self.scale
 
+    def size(self, u: float) -> float:
+        """How much of an effect that is, in usual ones: 0 at neutral, 1 at the usual value.
+
+        A share fades itself; of a frequency it is the inverse that does.
+        """
+        if not self.logarithmic or self.neutral is None:
+            return u
+        value, end, usual = self.value(u), self.neutral, self.typical
+        if self.unit == "1":
+            return (end - value) / (end - usual)
+        return (1.0 / value - 1.0 / end) / (1.0 / usual - 1.0 / end)
+
     def clip(self, u: float) -> float:
         """The nearest u whose value is allowed."""
         return self.u(self.value(u))

@@ -67,15 +67,7 @@ def put_on_trial(
 
 def magnitude(own: Sequence[Coordinate], at: Array) -> float:
     """Largest size of an effect in usual ones; at (own,): where it is in its coordinates."""
-    found = [0.0]
-    for c, u in zip(own, at, strict=True):
-        if c.is_size:
-            value = c.value(float(u))
-            if c.logarithmic:
-                found.append(0.0 if value == c.neutral else c.typical / value)
-            else:
-                found.append(abs(float(u)))
-    return max(found)
+    return max((abs(c.size(float(u))) for c, u in zip(own, at, strict=True) if c.is_size), default=0.0)
 
 
 def size_in(model: Model, name: str) -> float:

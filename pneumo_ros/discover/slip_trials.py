@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
+from pneumo_ros.discover.court import magnitude
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import moves
 from pneumo_ros.discover.slips import FEW, Slips, errors, friction_priors, with_values_of
@@ -139,11 +140,10 @@ def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, bas
     u = np.array([k.u(c.model[k.name]) for k in effect])
     z_train, z_held = deviations_better(base_train, c.train), deviations_better(base_held, c.held)
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=z_train)
-    sizes = [abs(x) for k, x in zip(effect, u, strict=True) if k.is_size and not k.logarithmic]
     gain = 1.0 - float(np.median(c.held) / np.median(base_held))
     share = share_removed(base_held, c.held)
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
     return Trial(
-        h, np.empty(0), {"slip": gain}, z_held, max(sizes, default=1.0), True, share, first, 0.0,
+        h, np.empty(0), {"slip": gain}, z_held, magnitude(effect, u), True, share, first, 0.0,
         float(np.median(base_train) - np.median(c.train)), refused=enough, std=c.std,
     )  # fmt: skip
