@@ -1,6 +1,6 @@
 """Coordinates in which candidates are fitted: sizes in typical ones, time constants and frequencies as logarithms."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ _FACTOR = 4.0  # between the shapes that are tried first
 _TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many either way: broad resonances overlap
 _RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
+_FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class Coordinate:
     low: float
     high: float
     unit: str = ""
+    wide: float = _WIDE  # prior deviation of a size, in typical ones
 
     @property
     def logarithmic(self) -> bool:
@@ -47,7 +49,7 @@ class Coordinate:
     @property
     def prior(self) -> float:
         """Standard deviation of u before anything was measured."""
-        return _NARROW if self.logarithmic else _WIDE
+        return _NARROW if self.logarithmic else self.wide
 
     def value(self, u: float) -> float:
         """The parameter's value, within its bounds."""
@@ -89,7 +91,9 @@ def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
     """Coordinates of all parameters of an effect; () when none of them fades it in."""
     if all(p.neutral is None for p in effect.parameters.values()):
         return ()
-    return tuple(_coordinate(effect, key) for key in effect.parameters)
+    found = tuple(_coordinate(effect, key) for key in effect.parameters)
+    many = sum(c.is_size for c in found) > _FEW
+    return tuple(replace(c, wide=_PROFILE) for c in found) if many else found
 
 
 def _coordinate(effect: type[Effect], key: str) -> Coordinate:

@@ -55,6 +55,12 @@ def test_frequencies_are_tried_finely_with_much_damping() -> None:
     assert not damping.tuned
 
 
+def test_a_profile_stays_near_neutral_where_no_recording_goes() -> None:
+    widths = {name: {c.prior for c in own if c.is_size and not c.logarithmic} for name, own in MISSING.items()}
+    assert widths["position_dependent_friction"] == {3.0}  # of a tenth each
+    assert {30.0} == set().union(*(w for name, w in widths.items() if name != "position_dependent_friction"))
+
+
 def test_one_model_holds_all_candidates_each_neutral() -> None:
     whole = everything(MODEL, MISSING)
     assert set(whole.effects) == {*MODEL.effects, *MISSING}
