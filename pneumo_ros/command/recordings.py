@@ -53,6 +53,7 @@ def _holds_files(folder: Path) -> bool:
 
 def read_run(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "tuple[Recording, Run]":
     """One recording as `options` say, and on a uniform grid; notes and errors as `read_runs`."""
+    from pneumo_ros.identify.cuts import parse_cuts, without
     from pneumo_ros.identify.plausible import check_run
     from pneumo_ros.identify.run import make_run
     from pneumo_ros.records import read_recording
@@ -63,7 +64,7 @@ def read_run(path: str, options: argparse.Namespace, console: Console, model: "M
     recording = corrected(recording, words, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
     for warning in recording.warnings:
         console.note(f"{recording.name}: {warning}")
-    run = make_run(recording, model.force_driven)
+    run = without(make_run(recording, model.force_driven), parse_cuts(options.cut).get(Path(path).resolve(), ()))
     for note in check_run(model, run):
         console.note(f"{recording.name}: {note}.")
     return recording, run
