@@ -1,16 +1,16 @@
 """A desk: what one tab of the browser works on. It outlives a reload of the page, and no other tab touches it."""
 
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.plant import Model, save_model
-from pneumo_ros.records import Recording
-from pneumo_ros.workbench.bags import ROLES, Bag, Reading, Role, found_bags, problem_of, read
+from pneumo_ros.workbench.bags import Reading
 from pneumo_ros.workbench.job import Job
 from pneumo_ros.workbench.plans import Bench, Plan, compare_plan, diagnose_plan, refit_plan
+from pneumo_ros.workbench.shelf import Shelf
 from pneumo_ros.workbench.variant import Compared, Variant, model_of
 
 _ATMOSPHERE = 101325.0  # Pa, for machines that do not say
@@ -40,62 +40,10 @@ class Desk:
         self.ticked: frozenset[str] = frozenset(self.model().effects)
         self.job: Job | None = None
         self._jobs = 0
-        self.bags: tuple[Bag, ...] = ()
+        atmosphere = self.model().parameters.get("air.atmospheric_pressure", _ATMOSPHERE)
+        self.shelf = Shelf(folder, given.reading, atmosphere, self.changed)
         self.opened: tuple[int, str] = (0, "")  # which job showed its result last, and on which tab
-        self.take(given.bags)
-
-    # --- recordings -------------------------------------------------------------------------------------------------
-
-    def take(self, paths: Iterable[str | Path]) -> None:
-        """Lay more recordings on the desk; those that cannot be read say why."""
-        have = {self.path(bag) for bag in self.bags}
-        new = [bag for bag in found_bags(paths, self.folder) if self.path(bag) not in have]
-        seen = [replace(bag, problem=problem_of(self.path(bag), self.given.reading, self.atmosphere)) for bag in new]
-        with self.lock:
-            taken = {bag.name for bag in self.bags}
-            self.bags += tuple(replace(b, name=f"{b.name} ({b.path})") if b.name in taken else b for b in seen)
-            self.changed()
-
-    def path(self, bag: Bag) -> Path:
-        """Where a recording lies."""
-        return (self.folder / bag.path).resolve()
-
-    def recording(self, bag: Bag) -> Recording:
-        """What a usable bag holds."""
-        return read(self.path(bag), self.given.reading, self.atmosphere)
-
-    @property
-    def atmosphere(self) -> float:
-        """Of the machine as given [Pa]."""
-        return self.model(0).parameters.get("air.atmospheric_pressure", _ATMOSPHERE)
-
-    def bag(self, name: str | None) -> Bag | None:
-        """The usable recording of that name, else the first one; None when there is none."""
-        usable = [bag for bag in self.bags if not bag.problem]
-        return next((bag for bag in usable if bag.name == name), usable[0] if usable else None)
-
-    def set_role(self, name: str, role: str) -> None:
-        """Fit a recording, hold it out or leave it out."""
-        if role not in ROLES:
-            raise UsageError(f"'{role}' is no role; known are {', '.join(ROLES)}")
-        chosen: Role = role  # type: ignore[assignment]  # checked above
-        self._change(name, lambda bag: replace(bag, role=chosen))
-
-    def cut(self, name: str, begin: float, end: float) -> None:
-        """Leave seconds of a recording out."""
-        if not begin < end:
-            raise UsageError("zoom to what is to be cut first: drag across the plot")
-        span = (round(max(begin, 0.0), 3), round(end, 3))
-        self._change(name, lambda bag: replace(bag, cuts=tuple(sorted({*bag.cuts, span}))))
-
-    def uncut(self, name: str, index: int) -> None:
-        """Take a cut back."""
-        self._change(name, lambda bag: replace(bag, cuts=bag.cuts[:index] + bag.cuts[index + 1 :]))
-
-    def _change(self, name: str, edit: Callable[[Bag], Bag]) -> None:
-        with self.lock:
-            self.bags = tuple(edit(bag) if bag.name == name else bag for bag in self.bags)
-            self.changed()
+        self.shelf.take(given.bags)
 
     # --- machines ---------------------------------------------------------------------------------------------------
 
@@ -183,7 +131,7 @@ class Desk:
 
     def _bench(self) -> Bench:
         effects = tuple(str(Path(path).resolve()) for path in self.given.effects)
-        return Bench(self.bags, self.given.reading, self.variant.machine, effects)
+        return Bench(self.shelf.bags, self.given.reading, self.variant.machine, effects)
 
     def _start(self, make: Callable[[int], Plan]) -> None:
         with self.lock:

@@ -18,7 +18,10 @@ _EMPTY = "Press Compare, then tick an effect and press Refit: the error falls, o
 
 def layout() -> html.Div:
     """A place for the waterfall, and for two variants."""
-    pick = html.Div([drop_down("Variant", "first"), drop_down("beside", "second")], className="row")
+    pick = html.Div(
+        [drop_down("Variant", "first", clearable=False), drop_down("beside", "second", clearable=False)],
+        className="row",
+    )
     return html.Div(
         [
             html.Div(id="error-content", className="content"),
@@ -42,8 +45,8 @@ def register(panels: Panels) -> None:
 
 def judged_by(desk: Desk) -> tuple[list[str], str]:
     """The recordings that errors are told of: those held out, else all in use; and how to call them."""
-    held = [bag.name for bag in desk.bags if bag.role == "hold" and not bag.problem]
-    used = [bag.name for bag in desk.bags if bag.role != "out" and not bag.problem]
+    held = [bag.name for bag in desk.shelf.bags if bag.role == "hold" and not bag.problem]
+    used = [bag.name for bag in desk.shelf.bags if bag.role != "out" and not bag.problem]
     return (held, "held out, never fitted") if held else (used, "that were fitted too")
 
 
@@ -72,8 +75,9 @@ def render(desk: Desk, _revision: int) -> list[Any]:
         return [content("error-content", [Section("", "Error step by step", tag("p", _EMPTY))], 0)]
     bags, what = judged_by(desk)
     text = (
-        f"Each of {len(bags)} recordings {what}, is predicted over windows of 1 s that start from an estimated state. "
-        "Shown is the error of a typical window in sensor noise; 1 x is the noise floor."
+        f"Predictions over windows of 1 s that start from an estimated state, on {len(bags)} "
+        f"recording{'s' if len(bags) != 1 else ''} {what}. Shown is the error of a typical window in sensor noise; "
+        "1 x is the noise floor."
     )
     title = "Error step by step"
     section = Section("step-by-step", title, Html(tag("p", text, class_="soft")), charts=(waterfall_chart(steps),))

@@ -17,7 +17,7 @@ def layout() -> html.Div:
     stores = [dcc.Store(id="revision"), dcc.Store(id="opened"), dcc.Interval(id="clock", interval=_OFTEN)]
     says = html.P("", id="job-says", role="status")
     bar = html.Progress(id="job-share", max="100", value="0", **{"aria-label": "Share done"})
-    stop = button("Cancel", "cancel", **{"aria-label": "Cancel the job"})
+    stop = button("Cancel", "cancel")
     return html.Div([html.Div([says, stop, bar], id="job", hidden=True), *stores])
 
 
@@ -31,7 +31,7 @@ def register(panels: Panels) -> None:
          State("opened", "data")],
         _look, first=False,
     )  # fmt: skip
-    panels.act([Input("cancel", "n_clicks")], lambda desk, clicks: asked(clicks) and desk.cancel())
+    panels.act([Input("cancel", "n_clicks")], _cancel)
 
 
 def _look(desk: Desk, _ticks: int, seen: int | None, said: str, opened: int | None) -> tuple[Any, ...]:
@@ -45,6 +45,11 @@ def _look(desk: Desk, _ticks: int, seen: int | None, said: str, opened: int | No
         str(round(100 * status.share)) if status else "0", status is None or status.state != "running",
         number, tab if number != (opened or 0) else no_update,
     )  # fmt: skip
+
+
+def _cancel(desk: Desk, clicks: int | None) -> None:
+    if asked(clicks):
+        desk.cancel()
 
 
 def words(status: Status) -> str:

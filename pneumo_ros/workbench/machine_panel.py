@@ -1,5 +1,6 @@
 """The machine: its variants, what to do with it, and its effects as check boxes."""
 
+from functools import partial
 from itertools import groupby
 from typing import Any
 
@@ -8,8 +9,9 @@ from dash.exceptions import PreventUpdate
 
 from pneumo_ros.diagnose.wording import number
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.catalogue import FRAME, body, catalogue, room, summary
+from pneumo_ros.plant.catalogue import body, catalogue, room, summary
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.library import FRAME
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.parts import Panels, asked, button, choice, revision
 
@@ -47,7 +49,7 @@ def register(panels: Panels) -> None:
     panels.show([Output("message", "children"), Output("message", "hidden")], [revision()], _message)
     panels.show([Output(key, "disabled") for key in ACTIONS], [revision()], _disabled)
     for key in ACTIONS:
-        panels.act([Input(key, "n_clicks")], lambda desk, clicks, key=key: asked(clicks) and getattr(desk, key)())
+        panels.act([Input(key, "n_clicks")], partial(_press, key))
     panels.act([Input({"type": "variant", "index": ALL}, "value")], _choose)
     panels.act([Input({"type": "effect", "name": ALL}, "value")], _tick)
 
@@ -103,6 +105,11 @@ def _parameters(model: Model, effect: type[Effect]) -> Any:
     ]  # fmt: skip
     head = html.Thead(html.Tr([html.Th(word, scope="col") for word in ("parameter", "value", "unit", "allowed")]))
     return html.Div(html.Table([head, html.Tbody(rows)]), className="wide")
+
+
+def _press(key: str, desk: Desk, clicks: int | None) -> None:
+    if asked(clicks):
+        getattr(desk, key)()
 
 
 def _message(desk: Desk, _revision: int) -> tuple[str, bool]:

@@ -41,12 +41,12 @@ def register(panels: Panels) -> None:
 
 def render(desk: Desk, _revision: int, chosen: str | None, drawn: str | None) -> tuple[Any, str, Any]:
     """Every recording, what was drawn, and which one is plotted; drawn anew only where something changed."""
-    shown = desk.bag(chosen)
+    shown = desk.shelf.bag(chosen)
     name = shown.name if shown else None
-    now = repr((desk.bags, name))
+    now = repr((desk.shelf.bags, name))
     if now == drawn:
         raise PreventUpdate
-    rows = [_row(desk, k, bag, bag.name == name) for k, bag in enumerate(desk.bags)]
+    rows = [_row(desk, k, bag, bag.name == name) for k, bag in enumerate(desk.shelf.bags)]
     return rows or html.P("No recordings yet.", className="soft"), now, no_update if name == chosen else name
 
 
@@ -54,7 +54,7 @@ def _row(desk: Desk, k: int, bag: Bag, shown: bool) -> html.Div:
     if bag.problem:
         return html.Div([html.B(bag.name), html.P(bag.problem, className="problem")], className="bag", role="alert")
     name = html.Button(bag.name, id={"type": "show", "index": k}, type="button", className="name", title=bag.path)
-    seconds = html.Small(f"{desk.recording(bag).duration:.1f} s")
+    seconds = html.Small(f"{desk.shelf.recording(bag).duration:.1f} s")
     options = [{"label": words, "value": role} for role, words in ROLES.items()]
     radio = dcc.RadioItems(options, bag.role, id={"type": "role", "index": k}, inline=True, className="roles")
     role = choice(f"What {bag.name} is for", radio, visible=False)
@@ -71,19 +71,19 @@ def _row(desk: Desk, k: int, bag: Bag, shown: bool) -> html.Div:
 def _uploaded(desk: Desk, when: int | None) -> None:
     folder = desk.folder / "uploads"
     if when and folder.is_dir():
-        desk.take(sorted(path for path in folder.iterdir() if not path.name.startswith(".")))
+        desk.shelf.take(sorted(path for path in folder.iterdir() if not path.name.startswith(".")))
 
 
 def _set_roles(desk: Desk, values: list[str | None], names: list[dict[str, Any]]) -> None:
     for role, one in zip(values, names, strict=True):
-        bag = desk.bags[one["index"]]
+        bag = desk.shelf.bags[one["index"]]
         if role and role != bag.role:
-            desk.set_role(bag.name, role)
+            desk.shelf.set_role(bag.name, role)
 
 
 def _uncut(desk: Desk, clicks: list[int | None]) -> None:
     if asked(clicks) and ctx.triggered_id:
-        desk.uncut(desk.bags[ctx.triggered_id["bag"]].name, ctx.triggered_id["index"])
+        desk.shelf.uncut(desk.shelf.bags[ctx.triggered_id["bag"]].name, ctx.triggered_id["index"])
 
 
 def _chosen(desk: Desk, clicks: list[int | None], wanted: dict[str, Any] | None) -> tuple[str, str]:
@@ -92,4 +92,4 @@ def _chosen(desk: Desk, clicks: list[int | None], wanted: dict[str, Any] | None)
         return desk.variant.compared.bags[wanted["number"] - 1], "signals"
     if not asked(clicks) or not isinstance(ctx.triggered_id, dict):
         raise PreventUpdate
-    return desk.bags[ctx.triggered_id["index"]].name, "signals"
+    return desk.shelf.bags[ctx.triggered_id["index"]].name, "signals"

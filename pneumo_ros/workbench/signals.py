@@ -1,5 +1,6 @@
 """The plot of one run: what was measured, what variants of the machine predict, errors, input, regimes."""
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -89,7 +90,7 @@ def _input(recording: Recording, span: Span | None) -> dict[str, Any]:
     driven = recording.voltage is None
     values = recording.effort if driven else recording.voltage
     title = "driving force [N]" if driven else "valve voltage [V]"
-    traces = [] if values is None else [_trace("input", "quiet", recording.time, values, span, "steps")]
+    traces = [] if values is None else [_trace("input", "third", recording.time, values, span, "steps")]
     return _panel(title, traces, _LOW)
 
 
@@ -120,7 +121,7 @@ def _shades(bag: Bag, view: View, variants: Mapping[str, Variant]) -> list[dict[
 def readings(bag: Bag, recording: Recording, view: View, variants: Mapping[str, Variant]) -> list[tuple[str, ...]]:
     """Rows for the cursors A and B: name, value at A, at B, their difference, unit."""
     at = view.cursors or {}
-    rows = [("time", *_values(at, lambda t: t), "s")]
+    rows: list[tuple[str, ...]] = [("time", *_values(at, lambda t: t), "s")]
     for name in (name for name in FIELDS if name in view.shown):
         words, unit, factor = SIGNALS[name]
         signal = getattr(recording, FIELDS[name])
@@ -139,6 +140,6 @@ def _at(time: Array, values: Array) -> Any:
 
 
 def _values(at: Mapping[str, float], value: Any) -> tuple[str, str, str]:
-    found = [value(at[name]) if name in at else None for name in "AB"]
-    a, b = ("-" if one is None else f"{one:.6g}" for one in found)
-    return a, b, "-" if None in found else f"{found[1] - found[0]:.6g}"
+    a, b = (value(at[name]) if name in at else math.nan for name in "AB")
+    told = ("-" if math.isnan(one) else f"{one:.6g}" for one in (a, b, b - a))
+    return next(told), next(told), next(told)

@@ -24,6 +24,7 @@ def layout() -> html.Div:
     signals = {name: words for name, (words, _, _) in SIGNALS.items()} | {INPUT: "input"} | EXTRAS
     shown = dcc.Checklist([{"label": w, "value": n} for n, w in signals.items()], _FIRST, id="shown", inline=True)
     sets = dcc.RadioItems(["A", "B"], "A", id="cursor", inline=True)
+    plot = dcc.Graph(id="signals", config=_CONFIG, responsive=True, style={"height": "100%"})
     return html.Div(
         [
             html.Div(choice("Show", shown), className="row"),
@@ -38,7 +39,7 @@ def layout() -> html.Div:
                 className="row",
             ),
             html.P("Drag across the plot to zoom, double click for the whole run.", className="soft"),
-            html.Div(dcc.Graph(id="signals", config=_CONFIG, responsive=True, style={"height": "100%"}), id="signals-plot"),
+            html.Div(plot, id="signals-plot", role="img", **{"aria-label": "Signals of the run over time"}),
             html.Div(id="cursors", className="cursors"),
             *(dcc.Store(id=name) for name in ("chart", "span", "marks", "theme")),
         ],
@@ -93,14 +94,14 @@ def render(
     other: int | None, marks: dict[str, float] | None,
 ) -> tuple[Any, Any]:  # fmt: skip
     """The chart and the table of the cursors."""
-    bag = desk.bag(run)
+    bag = desk.shelf.bag(run)
     if bag is None:
         return None, html.P(
             "Drop a recording on the left, or start with some: pneumo workbench BAG...", className="empty"
         )
     seen: Span | None = (span[0], span[1]) if span else None
     view, variants = View(shown, seen, regime or "", marks), _variants(desk, other)
-    recording = desk.recording(bag)
+    recording = desk.shelf.recording(bag)
     if not marks:
         return signals_chart(bag, recording, view, variants), None
     rows = readings(bag, recording, view, variants)
@@ -126,6 +127,6 @@ def _options(desk: Desk, _revision: int) -> tuple[Any, Any]:
 
 
 def _cut(desk: Desk, clicks: int | None, run: str | None, span: list[float] | None) -> None:
-    bag = desk.bag(run)
+    bag = desk.shelf.bag(run)
     if asked(clicks) and bag:
-        desk.cut(bag.name, *(span or (0.0, 0.0)))
+        desk.shelf.cut(bag.name, *(span or (0.0, 0.0)))

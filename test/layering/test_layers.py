@@ -27,7 +27,15 @@ ALLOWED = {
     "workbench": {"report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "ros": {"discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "command": {
-        "workbench", "report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control",
+        "workbench",
+        "report",
+        "discover",
+        "experiment",
+        "diagnose",
+        "identify",
+        "plant",
+        "records",
+        "control",
     },
     "__main__": {"command"},
 }

@@ -1,0 +1,80 @@
+"""The whole story in a browser: recordings, where the model fails, an effect ticked, the error falls."""
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+from workbench.conftest import LEAK
+from workbench.tab import Tab
+
+from pneumo_ros.plant import load_model
+
+
+def errors(tab: Tab) -> list[float]:
+    """The steps of the waterfall, in noise floors, as they are told."""
+    words = tab.see("#error-content figcaption").inner_text()
+    return [float(found) for found in re.findall(r"([\d.]+) x", words)]
+
+
+def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> None:
+    tab.press("Compare")
+    tab.see("#failures-content table.heat", "holdout_steps")
+    assert tab.page.locator("#failures-content table.heat").first.locator("tbody td a").count() == 2 * 6
+    tab.see("#verdict", "fail")
+    tab.tick(LEAK.replace("_", " "))
+    tab.press("Refit")
+    tab.see("#job-says", "left")
+    tab.see("#error-content .plot")
+    given, refitted, after, *_ = errors(tab)
+    assert tab.clicks < 10
+    assert after < 1.5
+    assert given > refitted > 10.0 * after
+    tab.see("#pair table", "cross_piston_leakage.conductance")
+    tab.view("Signals")
+    tab.wait_for_traces(lambda found: any(one["name"] == f"model 1 (+ {LEAK})" for one in found))
+    machine = saved(tab, tmp_path)
+    assert load_model(machine).effects[-1] == LEAK
+    undone(tab)
+
+
+def saved(tab: Tab, folder: Path) -> Path:
+    """The machine file as the browser saves it."""
+    tab.view("Save")
+    with tab.page.expect_download() as download:
+        tab.page.get_by_role("link", name="Save the machine file: axis_1.yaml").click()
+    download.value.save_as(folder / "axis_1.yaml")
+    return folder / "axis_1.yaml"
+
+
+def undone(tab: Tab) -> None:
+    """Undo leads back to the machine as given; the variant stays there to be chosen again."""
+    tab.press("Undo")
+    tab.see("#machine", "axis (as given)")
+    assert not tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
+    tab.page.get_by_label(f"1: + {LEAK}").check()
+    tab.see("#machine", "axis_1.yaml")
+    assert tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
+
+
+def test_the_command_lines_do_the_same(tab: Tab, tmp_path: Path) -> None:
+    tab.tick("viscous friction")
+    tab.press("Refit")
+    tab.see("#error-content .plot")
+    tab.view("Save")
+    lines = tab.see("#commands", "pneumo add").inner_text().splitlines()
+    assert [shlex.split(line)[1] for line in lines] == ["add", "compare"]
+    shown = saved(tab, tmp_path)
+    for line in lines:
+        words = [sys.executable, "-m", "pneumo_ros", *shlex.split(line)[1:]]
+        (tmp_path / "typed").mkdir(exist_ok=True)
+        done = subprocess.run(words, cwd=tmp_path / "typed", capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "typed" / "axis_1.yaml").read_text() == shown.read_text()
+    compared = json.loads((tmp_path / "typed" / "compared_1.json").read_text())
+    with tab.page.expect_download() as download:
+        tab.page.get_by_role("link", name="comparison as JSON").click()
+    told = json.loads(Path(download.value.path()).read_text())
+    assert told["runs"] == compared["runs"]
