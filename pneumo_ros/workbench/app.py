@@ -15,6 +15,7 @@ from pneumo_ros.workbench import (
     recordings_panel,
     save_panel,
     signals_panel,
+    sliders_panel,
 )  # fmt: skip
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
@@ -27,6 +28,7 @@ TABS = {
     "failures": ("Where it fails", failures_panel),
     "error": ("Error step by step", error_panel),
     "diagnosis": ("Diagnosis", diagnosis_panel),
+    "sliders": ("Sliders", sliders_panel),
     "save": ("Save", save_panel),
 }
 _REPORT = {"page.css": "text/css", "series.js": "text/javascript", "plots.js": "text/javascript"}
