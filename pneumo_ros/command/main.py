@@ -23,6 +23,7 @@ VERBS = (
     "effects",
     "experiment",
     "tune",
+    "view",
     "workbench",
 )  # in the order help lists them; each is a module beside this one
 

@@ -8,8 +8,9 @@ Everything it computes is a verb of this command, which it names.
 import argparse
 import os
 import signal
+import sys
 
-from pneumo_ros.command.arguments import add_model, add_recordings
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings
 from pneumo_ros.command.console import Console
 from pneumo_ros.environment import require_libraries
 
@@ -20,9 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --port, how to read recordings, and the machine file."""
     parser.add_argument("bags", nargs="*", metavar="BAG", help="recordings, or folders of recordings")
     parser.add_argument("--port", type=int, default=PORT, metavar="N", help=f"default: {PORT}; 0 takes any free one")
-    add_recordings(parser)
+    add_recordings(parser, cut=False)
     add_model(parser)
-    parser.add_argument("--quiet", action="store_true", help="no messages")
+    add_output(parser)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
@@ -37,6 +38,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
     def ready(address: str) -> None:
         console.say(address)
+        console.json({"schema_version": 1, "address": address})
+        sys.stdout.flush()
         console.note("Open this address in a browser on this machine; Ctrl-C ends the workbench.")
 
     signal.signal(signal.SIGTERM, lambda *_: os.kill(os.getpid(), signal.SIGINT))

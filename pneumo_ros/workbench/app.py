@@ -11,6 +11,7 @@ from pneumo_ros.workbench import (
     error_panel,
     failures_panel,
     job_panel,
+    live_panel,
     machine_panel,
     recordings_panel,
     save_panel,
@@ -29,6 +30,7 @@ TABS = {
     "error": ("Error step by step", error_panel),
     "diagnosis": ("Diagnosis", diagnosis_panel),
     "sliders": ("Sliders", sliders_panel),
+    "live": ("Live", live_panel),
     "save": ("Save", save_panel),
 }
 _REPORT = {"page.css": "text/css", "series.js": "text/javascript", "plots.js": "text/javascript"}

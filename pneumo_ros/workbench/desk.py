@@ -9,7 +9,8 @@ from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.plant import Model, save_model
 from pneumo_ros.workbench.bags import Reading
 from pneumo_ros.workbench.job import Job
-from pneumo_ros.workbench.plans import Bench, Plan, compare_plan, diagnose_plan, refit_plan
+from pneumo_ros.workbench.live import Live
+from pneumo_ros.workbench.plans import Bench, Plan, campaign_plan, compare_plan, diagnose_plan, refit_plan
 from pneumo_ros.workbench.shelf import Shelf
 from pneumo_ros.workbench.variant import Compared, Variant, model_of
 
@@ -39,6 +40,7 @@ class Desk:
         self.chosen = 0  # counts how often another variant was taken up
         self.ticked: frozenset[str] = frozenset(self.model().effects)
         self.job: Job | None = None
+        self.live: Live | None = None
         self._jobs = 0
         atmosphere = self.model().parameters.get("air.atmospheric_pressure", _ATMOSPHERE)
         self.shelf = Shelf(folder, given.reading, atmosphere, self.changed)
@@ -123,9 +125,15 @@ class Desk:
         if self.job is not None:
             self.job.cancel()
 
+    def campaign(self, namespace: str) -> None:
+        """Start driving a live plant with constant voltages; what is recorded is laid on the desk."""
+        self._start(lambda number: campaign_plan(self._bench(), namespace, f"campaign_{number}"))
+
     def close(self) -> None:
         """End what runs and wait for it."""
         self.cancel()
+        if self.live is not None:
+            self.live.close()
         if self.job is not None:
             self.job.wait(10.0)
 
@@ -144,6 +152,9 @@ class Desk:
 
     def _done(self, plan: Plan, before: Variant) -> None:
         """Keep what the verbs of a plan wrote."""
+        if plan.recordings:
+            self.shelf.take([self.folder / plan.recordings])
+            return
         stem = self.folder / plan.compared
         compared = Compared(plan.bags, *(stem.with_suffix(kind) for kind in (".json", ".npz", ".html")))
         with self.lock:

@@ -16,6 +16,7 @@ State = Literal["running", "done", "failed", "cancelled"]
 # what `command.console.Progress` writes where there is no terminal
 _TOLD = re.compile(r"(?P<title>[^:]+): (?P<percent>\d+) %(?:, about [^:]+ left)?(?:: (?P<doing>.*))?")
 _PATIENCE = 5.0  # s, for a verb to end after SIGTERM
+_LONGEST = 120  # letters of a message
 _GUESS = 2.0  # s of work before the rest is estimated
 
 
@@ -118,8 +119,8 @@ class Job:
             if told:
                 self._share = max(self._share, begin + part * int(told["percent"]) / 100.0)
                 self._doing = told["doing"] or told["title"].lower()
-            elif text.startswith("compiling"):
-                self._doing = text
+            elif text:
+                self._doing = text[:_LONGEST]
 
     def _finish(self, state: State, message: str) -> None:
         self._state, self._message, self._end = state, message, time.monotonic()

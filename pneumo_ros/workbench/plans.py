@@ -45,6 +45,7 @@ class Plan:
     bags: tuple[str, ...]  # that are compared, in this order
     compared: str  # stem of the comparison's files
     machine: str = ""
+    recordings: str = ""  # folder of what is recorded
     made: str = ""  # stem of JSON and report of the verb that makes the machine
 
     def shown(self) -> tuple[str, ...]:
@@ -88,6 +89,14 @@ def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
     line, bags = _compare(bench, machine, number)
     lines = (Line(tuple(words), _DIAGNOSE_LINE), line)
     return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine, made)
+
+
+def campaign_plan(bench: Bench, namespace: str, folder: str) -> Plan:
+    """Drive a live plant with constant voltages, and record each run into `folder`."""
+    effects = [word for path in bench.effects for word in ("--effects", path)]
+    place = ["--namespace", namespace] if namespace else []
+    words = ["experiment", "constant-voltage", *place, "--out", folder, "--model", bench.machine, *effects]
+    return Plan("Constant voltages", "", (Line(tuple(words)),), (), "", recordings=folder)
 
 
 def _compare(bench: Bench, machine: str, number: int) -> tuple[Line, tuple[str, ...]]:

@@ -14,6 +14,7 @@ from pneumo_ros.workbench.parts import Panels, asked, button, drop_down, revisio
 from pneumo_ros.workbench.thin import in_view, packed
 
 _SLIDER = {"type": "slider", "name": ALL}
+_BUTTONS = {"reset": "Back to the values", "keep": "Keep as a variant"}
 _TOLD = {"type": "slid", "name": ALL}
 
 
@@ -28,7 +29,7 @@ def layout() -> html.Div:
     return html.Div(
         [
             html.P(text, className="soft"),
-            html.Div([parts, button("Back to the values", "reset"), button("Keep as a variant", "keep")], className="row"),
+            html.Div([parts, *(button(words, key) for key, words in _BUTTONS.items())], className="row"),
             html.Div(id="sliders"),
             html.P("", id="response-says", className="message", role="alert", hidden=True),
             html.Div(plot, id="response-plot", role="img", **{"aria-label": "Simulated response over time"}),
