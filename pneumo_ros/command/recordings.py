@@ -50,9 +50,8 @@ def read_run(path: str, options: argparse.Namespace, console: Console, model: "M
     recording = corrected(recording, words, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
     for warning in recording.warnings:
         console.note(f"{recording.name}: {warning}")
-    run = without(
-        make_run(recording, model.force_driven), parse_cuts(getattr(options, "cut", ())).get(Path(path).resolve(), ())
-    )
+    cuts = parse_cuts(getattr(options, "cut", ()))  # not every verb has the option
+    run = without(make_run(recording, model.force_driven), cuts.get(Path(path).resolve(), ()))
     for note in check_run(model, run):
         console.note(f"{recording.name}: {note}.")
     return recording, run

@@ -6,6 +6,7 @@ Everything it computes is a verb of this command, which it names.
 """
 
 import argparse
+import contextlib
 import os
 import signal
 import sys
@@ -43,8 +44,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.note("Open this address in a browser on this machine; Ctrl-C ends the workbench.")
 
     signal.signal(signal.SIGTERM, lambda *_: os.kill(os.getpid(), signal.SIGINT))
-    try:
+    with contextlib.suppress(KeyboardInterrupt):
         serve(given, options.port, ready)
-    except KeyboardInterrupt:
-        console.note("The workbench has ended.")
+    console.note("The workbench has ended.")
     return 0

@@ -18,6 +18,7 @@ from pneumo_ros.workbench import (
     signals_panel,
     sliders_panel,
 )  # fmt: skip
+from pneumo_ros.workbench.data import answer_plots
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
 from pneumo_ros.workbench.parts import Panels, revision
@@ -33,6 +34,7 @@ TABS = {
     "live": ("Live", live_panel),
     "save": ("Save", save_panel),
 }
+_PLOTLY = "/report/plotly.min.js"
 _REPORT = {"page.css": "text/css", "series.js": "text/javascript", "plots.js": "text/javascript"}
 
 
@@ -42,7 +44,7 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     app = Dash(
         "pneumo_ros.workbench", server=server, title="pneumo workbench", update_title=None,
         assets_folder=str(Path(__file__).parent / "assets"), suppress_callback_exceptions=True, enable_mcp=False,
-        external_scripts=[f"/report/{name}" for name in _REPORT if name.endswith(".js")],
+        external_scripts=[{"src": _PLOTLY, "defer": "defer"}, "/report/series.js", "/report/plots.js"],
         external_stylesheets=["/report/page.css"],
         meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"},
                    {"name": "color-scheme", "content": "light dark"}],
@@ -55,6 +57,7 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     app.clientside_callback(ClientsideFunction("bench", "tab"), Output("tab-shown", "data"), Input("tab", "value"))
     server.add_url_rule("/report/<name>", "report", _report_file)
     accept_uploads(server, desks.uploads)
+    answer_plots(server, desks)
     save_panel.serve_files(server, desks)
     guard.protect(server, lambda: f"/b/{desks.new()}", app.csp_hashes())
     return app
@@ -82,6 +85,11 @@ def _machine(desk: Desk, _revision: int) -> list[str]:
 
 
 def _report_file(name: str) -> Response:
+    """What the page shares with reports."""
+    if _PLOTLY.endswith(f"/{name}"):
+        from plotly.offline import get_plotlyjs
+
+        return Response(get_plotlyjs(), mimetype="text/javascript", headers={"Cache-Control": "private, max-age=3600"})
     if name not in _REPORT:
         return Response("there is no such file", 404)
     text = files("pneumo_ros.report").joinpath(f"assets/{name}").read_text(encoding="utf-8")

@@ -18,10 +18,20 @@ class Desks:
         self.given = given
         self._root = tempfile.TemporaryDirectory(prefix="pneumo_workbench_")
         self._desks: dict[str, Desk] = {}
+        self._ready = ""  # a desk that is laid out and that nobody has taken yet
         self._lock = threading.Lock()
 
+    def prepare(self) -> None:
+        """Lay out a desk for the first who comes; raises what `Desk` raises."""
+        self._ready = self._lay_out()
+
     def new(self) -> str:
-        """Lay out a new desk with what the command line gave; its identifier."""
+        """A new desk with what the command line gave; its identifier."""
+        with self._lock:
+            ready, self._ready = self._ready, ""
+        return ready or self._lay_out()
+
+    def _lay_out(self) -> str:
         name = secrets.token_hex(6)
         folder = Path(self._root.name).resolve() / name
         folder.mkdir()

@@ -33,7 +33,6 @@ def layout() -> html.Div:
         button("Set", "set"),
         html.Span("", id="set-says", role="status"),
     ]
-    plot = dcc.Graph(id="live", responsive=True, style={"height": "100%"}, config={"displayModeBar": False})
     return html.Div(
         [
             html.P("A simulator or a rig that runs on this machine's ROS domain.", className="soft"),
@@ -41,9 +40,10 @@ def layout() -> html.Div:
                       button("Constant-voltage campaign", "campaign")], className="row"),
             html.Div(setting, className="row"),
             html.P("", id="live-says", role="status"),
-            html.Div(plot, id="live-plot", role="img", **{"aria-label": "The axis over the last 20 s"}),
+            html.Div(id="live-plot", role="img", **{"aria-label": "The axis over the last 20 s"}),
             html.Div(id="live-status"),
-            dcc.Store(id="live-chart"), dcc.Interval(id="live-clock", interval=_OFTEN, disabled=True),
+            dcc.Store(id="live-chart"), dcc.Store(id="live-shown"),
+            dcc.Interval(id="live-clock", interval=_OFTEN, disabled=True),
         ],
         id="panel-live", className="card panel", hidden=True,
     )  # fmt: skip
@@ -62,9 +62,8 @@ def register(panels: Panels) -> None:
                  Output("set-says", "children")],
                 [Input("live-clock", "n_intervals"), State("live-says", "children")], _look, first=False)  # fmt: skip
     panels.app.clientside_callback(
-        ClientsideFunction("bench", "figure"), Output("live", "figure"), Input("live-chart", "data"),
-        Input("theme", "data"), prevent_initial_call=True,
-    )  # fmt: skip
+        ClientsideFunction("bench", "place"), Output("live-shown", "data"), Input("live-chart", "data")
+    )
 
 
 def _watch(desk: Desk, clicks: int | None, namespace: str | None) -> None:

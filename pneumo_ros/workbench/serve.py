@@ -20,17 +20,18 @@ def serve(given: Given, port: int, ready: Callable[[str], None]) -> None:
     """
     from waitress.server import create_server
 
+    listening = _listen(port)
     desks = Desks(given)
     try:
-        listening = _listen(port)
         guard = Guard(listening.getsockname()[1])
-        desks.new()  # a wrong machine file is told before anybody opens the page
+        desks.prepare()  # a wrong machine file is told before anybody opens the page
         app = make_app(desks, guard)
         logging.getLogger("waitress.queue").setLevel(logging.ERROR)  # a busy machine is no news
         server = create_server(app.server, sockets=[listening], threads=_THREADS, ident=None)
         ready(guard.address)
         server.run()
     finally:
+        listening.close()
         desks.close()
 
 

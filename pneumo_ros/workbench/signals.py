@@ -41,7 +41,7 @@ def signals_chart(bag: Bag, recording: Recording, view: View, variants: Mapping[
     span = view.span or (0.0, recording.duration)
     return {
         "title": bag.name, "x": "time [s]", "link": "run", "span": list(span), "logX": False, "legend": True,
-        "panels": panels, "place": "signals-plot", "height": 80 + sum(p["pixels"] for p in panels),
+        "panels": panels, "height": 80 + sum(p["pixels"] for p in panels),
         "shades": _shades(bag, view, variants), "cursors": dict(view.cursors or {}),
     }  # fmt: skip
 

@@ -6,17 +6,14 @@ from dash import ClientsideFunction, Input, Output, State, ctx, dcc, html
 from dash.exceptions import PreventUpdate
 
 from pneumo_ros.diagnose.wording import REGIMES, SIGNALS
+from pneumo_ros.workbench.data import cursors_of
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.parts import Panels, asked, button, choice, drop_down, revision, table
-from pneumo_ros.workbench.signals import EXTRAS, INPUT, View, readings, signals_chart
-from pneumo_ros.workbench.thin import Span
-from pneumo_ros.workbench.variant import Variant
+from pneumo_ros.workbench.signals import EXTRAS, INPUT
 
-_CONFIG = {
-    "displaylogo": False, "doubleClick": False, "topojsonURL": "",
-    "modeBarButtons": [["toImage"], ["zoom2d", "pan2d", "autoScale2d"]],
-}  # fmt: skip
 _FIRST = [*SIGNALS, INPUT, "errors"]
+_EMPTY = "Drop a recording on the left, or start with some: pneumo workbench BAG..."
+_MINUS = "\N{MINUS SIGN}"
 
 
 def layout() -> html.Div:
@@ -24,7 +21,6 @@ def layout() -> html.Div:
     signals = {name: words for name, (words, _, _) in SIGNALS.items()} | {INPUT: "input"} | EXTRAS
     shown = dcc.Checklist([{"label": w, "value": n} for n, w in signals.items()], _FIRST, id="shown", inline=True)
     sets = dcc.RadioItems(["A", "B"], "A", id="cursor", inline=True)
-    plot = dcc.Graph(id="signals", config=_CONFIG, responsive=True, style={"height": "100%"})
     return html.Div(
         [
             html.Div(choice("Show", shown), className="row"),
@@ -38,10 +34,10 @@ def layout() -> html.Div:
                 ],
                 className="row",
             ),
-            html.P("Drag across the plot to zoom, double click for the whole run.", className="soft"),
-            html.Div(plot, id="signals-plot", role="img", **{"aria-label": "Signals of the run over time"}),
+            html.P(id="signals-says", className="soft"),
+            html.Div(id="signals", role="img", **{"aria-label": "Signals of the run over time"}),
             html.Div(id="cursors", className="cursors"),
-            *(dcc.Store(id=name) for name in ("chart", "span", "marks", "theme")),
+            *(dcc.Store(id=name) for name in ("signals-shown", "span", "clicked", "marks", "whole-pressed")),
         ],
         id="panel-signals", className="card panel",
     )  # fmt: skip
@@ -49,71 +45,42 @@ def layout() -> html.Div:
 
 def register(panels: Panels) -> None:
     """Callbacks of this panel."""
-    panels.show(
-        [Output("span", "data")],
-        [Input("signals", "relayoutData"), Input("whole", "n_clicks"), Input("run", "data"), State("span", "data")],
-        _span, first=False,
+    asks = [revision(), Input("run", "data"), Input("shown", "value"), Input("regime", "value"),
+            Input("other", "value"), Input("marks", "data")]  # fmt: skip
+    panels.app.clientside_callback(ClientsideFunction("bench", "signals"), Output("signals-shown", "data"), *asks)
+    panels.app.clientside_callback(
+        ClientsideFunction("bench", "whole"), Output("whole-pressed", "data"), Input("whole", "n_clicks"),
+        prevent_initial_call=True,
     )  # fmt: skip
-    panels.show([Output("marks", "data")], [Input("signals", "clickData"), Input("run", "data"),
-                State("cursor", "value"), State("marks", "data")], _mark, first=False)  # fmt: skip
-    asks = [revision(), Input("run", "data"), Input("span", "data"), Input("shown", "value"),
-            Input("regime", "value"), Input("other", "value"), Input("marks", "data")]  # fmt: skip
-    panels.show([Output("chart", "data"), Output("cursors", "children")], asks, render)
+    panels.show([Output("marks", "data")], [Input("clicked", "data"), Input("run", "data"), State("cursor", "value"),
+                State("marks", "data")], _mark, first=False)  # fmt: skip
+    panels.show([Output("cursors", "children"), Output("signals-says", "children")], asks, render)
     panels.show([Output("regime", "options"), Output("other", "options")], [revision()], _options)
     panels.act([Input("cut", "n_clicks"), State("run", "data"), State("span", "data")], _cut)
-    panels.app.clientside_callback(
-        ClientsideFunction("bench", "figure"), Output("signals", "figure"), Input("chart", "data"),
-        Input("theme", "data"), prevent_initial_call=True,
-    )  # fmt: skip
-
-
-def _span(_desk: Desk, moved: dict[str, Any] | None, _whole: int, _run: str, now: list[float] | None) -> list[Any]:
-    if ctx.triggered_id != "signals":
-        return [None]
-    moved = moved or {}
-    if moved.get("xaxis.autorange"):
-        return [None]
-    span = moved.get("xaxis.range") or [moved.get("xaxis.range[0]"), moved.get("xaxis.range[1]")]
-    if span[0] is None or span == now:
-        raise PreventUpdate
-    return [[float(span[0]), float(span[1])]]
 
 
 def _mark(
-    _desk: Desk, click: dict[str, Any] | None, _run: str, which: str, marks: dict[str, float] | None
+    _desk: Desk, click: dict[str, float] | None, _run: str, which: str, marks: dict[str, float] | None
 ) -> list[dict[str, float]]:
-    if ctx.triggered_id == "run":
+    if ctx.triggered_id == "run" or click is None:
+        if not marks:
+            raise PreventUpdate
         return [{}]
-    if not click or not click.get("points"):
-        raise PreventUpdate
-    return [{**(marks or {}), which: float(click["points"][0]["x"])}]
+    return [{**(marks or {}), which: float(click["x"])}]
 
 
 def render(
-    desk: Desk, _revision: int, run: str | None, span: list[float] | None, shown: list[str], regime: str | None,
-    other: int | None, marks: dict[str, float] | None,
-) -> tuple[Any, Any]:  # fmt: skip
-    """The chart and the table of the cursors."""
-    bag = desk.shelf.bag(run)
-    if bag is None:
-        return None, html.P(
-            "Drop a recording on the left, or start with some: pneumo workbench BAG...", className="empty"
-        )
-    seen: Span | None = (span[0], span[1]) if span else None
-    view, variants = View(shown, seen, regime or "", marks), _variants(desk, other)
-    recording = desk.shelf.recording(bag)
-    if not marks:
-        return signals_chart(bag, recording, view, variants), None
-    rows = readings(bag, recording, view, variants)
-    head = ("", "at A", "at B", "B \N{MINUS SIGN} A", "unit")
-    return signals_chart(bag, recording, view, variants), table(head, rows, "Cursors A and B")
-
-
-def _variants(desk: Desk, other: int | None) -> dict[str, Variant]:
-    found = {"model": desk.variant}
-    if other is not None and other != desk.current and other < len(desk.variants):
-        found["second"] = desk.variants[other]
-    return found
+    desk: Desk, _revision: int, run: str | None, shown: list[str], regime: str | None, other: int | None,
+    marks: dict[str, float] | None,
+) -> tuple[Any, str]:  # fmt: skip
+    """The table of the cursors, and a sentence."""
+    if desk.shelf.bag(run) is None:
+        return None, _EMPTY
+    asked_for = {"run": run, "shown": shown, "regime": regime, "other": other, "marks": marks}
+    rows = cursors_of(desk, asked_for)
+    head = ("", "at A", "at B", f"B {_MINUS} A", "unit")
+    found = table(head, rows, "Cursors A and B") if rows else None
+    return found, "Drag across the plot to zoom, double click for the whole run."
 
 
 def _options(desk: Desk, _revision: int) -> tuple[Any, Any]:

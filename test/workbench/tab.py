@@ -53,13 +53,13 @@ class Tab:
     def traces(self) -> list[dict[str, Any]]:
         """Name, x and y of what the plot of the run shows."""
         pick = "one => one._fullData.map(t => ({name: t.name, x: [...t.x], y: [...t.y], yaxis: t.yaxis}))"
-        found: list[dict[str, Any]] = self.page.locator("#signals .js-plotly-plot").evaluate(pick)
+        found: list[dict[str, Any]] = self.page.locator("#signals").evaluate(pick)
         return found
 
     def wait_for_traces(self, ready: Any) -> list[dict[str, Any]]:
         """Until what the plot shows is `ready`."""
         for _ in range(200):
-            found = self.traces() if self.page.locator("#signals .js-plotly-plot .main-svg").count() else []
+            found = self.traces() if self.page.locator("#signals .main-svg").count() else []
             if ready(found):
                 return found
             self.page.wait_for_timeout(50)

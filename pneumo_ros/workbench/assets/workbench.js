@@ -1,10 +1,11 @@
-// What the page does in the browser: charts in the report's own way of drawing, its sections, tabs, dropped files.
+// What the page does in the browser: charts in the report's own way of drawing, its sections, and tabs.
 "use strict";
 window.dash_clientside = window.dash_clientside || {};
 window.dash_clientside.bench = (() => {
   const CONFIG = { displaylogo: false, responsive: true, doubleClick: false, topojsonURL: "", modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "autoScale2d"]] };
+  const same = () => window.dash_clientside.no_update;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-  const drawn = new Map(); // plot of a section -> its chart
+  const charts = new Map(); // element that is drawn -> its chart
   const dark = matchMedia("(prefers-color-scheme: dark)");
 
   const shade = (one) => ({
@@ -16,45 +17,137 @@ window.dash_clientside.bench = (() => {
     label: { text: name, textposition: "end", font: { color: colour("accent") } },
   });
 
-  // A chart of the server as a figure of dcc.Graph.
-  async function figure(chart, theme) {
-    if (!chart) return window.dash_clientside.no_update;
-    const place = document.getElementById(chart.place);
-    const width = place ? place.clientWidth : 900;
-    const data = await Plots.traces(chart, null, width);
-    const layout = Plots.layout(chart, null, width);
-    if (place) place.style.height = `${chart.height}px`;
-    layout.autosize = true;
-    layout.shapes = [...(chart.shades || []).map(shade), ...Object.entries(chart.cursors || {}).map(cursor)];
-    return { data, layout };
-  }
-
-  async function draw(div) {
+  async function draw(div, chart) {
+    charts.set(div, chart);
     while (!window.Plotly) await new Promise((done) => setTimeout(done, 50));
-    const chart = drawn.get(div);
-    if (!chart || !div.isConnected) return;
+    if (!div.isConnected || charts.get(div) !== chart) return; // a later one overtook it
     const width = Math.max(Math.round(div.clientWidth), 300);
-    await window.Plotly.react(div, await Plots.traces(chart, null, width), Plots.layout(chart, null, width), CONFIG);
-    div.dataset.drawn = "yes";
+    if (chart.height) div.style.height = `${chart.height}px`;
+    const data = await Plots.traces(chart, null, width);
+    data.forEach((trace) => {
+      const before = (div.data || []).find((one) => one.name === trace.name && one.yaxis === trace.yaxis);
+      if (before && before.visible !== undefined) trace.visible = before.visible;
+    });
+    const layout = Plots.layout(chart, null, width);
+    layout.shapes = [...(chart.shades || []).map(shade), ...Object.entries(chart.cursors || {}).map(cursor)];
+    await window.Plotly.react(div, data, layout, CONFIG);
+    div.dataset.drawn = String(Number(div.dataset.drawn || 0) + 1);
   }
 
   const watcher = new IntersectionObserver((entries) => entries.forEach((entry) => {
     if (!entry.isIntersecting) return;
     watcher.unobserve(entry.target);
-    draw(entry.target);
+    draw(entry.target, charts.get(entry.target));
   }), { rootMargin: "300px" });
 
   // Sections of a report, escaped by the server, in the element `target`.
   function show(content) {
-    if (!content) return window.dash_clientside.no_update;
+    if (!content) return same();
     const place = document.getElementById(content.target);
-    place.querySelectorAll(".plot").forEach((div) => { window.Plotly && window.Plotly.purge(div); drawn.delete(div); });
+    place.querySelectorAll(".plot").forEach((div) => { window.Plotly && window.Plotly.purge(div); charts.delete(div); });
     place.innerHTML = content.html;
     place.querySelectorAll(".plot").forEach((div) => {
-      drawn.set(div, content.charts[div.id]);
+      charts.set(div, content.charts[div.id]);
       watcher.observe(div);
     });
     return content.stamp;
+  }
+
+  // A chart that the server makes for what is asked; a sentence instead where it cannot.
+  async function fetched(what, asked) {
+    const desk = location.pathname.split("/").pop();
+    const answer = await fetch(`/${what}/${desk}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(asked) });
+    return answer.ok ? [await answer.json(), ""] : [null, await answer.text()];
+  }
+
+  // --- the plot of the run -----------------------------------------------------------------------------------------
+  let view = { span: null };
+  let turn = 0;
+
+  async function redraw() {
+    const mine = ++turn;
+    const [chart] = await fetched("signals", view);
+    const div = document.getElementById("signals");
+    div.hidden = !chart;
+    if (!chart || mine !== turn) return;
+    await draw(div, chart);
+    if (div.dataset.listens) return;
+    div.dataset.listens = "yes";
+    div.on("plotly_relayout", zoomed);
+    div.on("plotly_doubleclick", () => zoom(null));
+    div.on("plotly_click", (event) => window.dash_clientside.set_props("clicked", { data: { x: event.points[0].x, at: Date.now() } }));
+  }
+
+  function zoomed(change) {
+    const range = change["xaxis.range"] || [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+    if (change["xaxis.autorange"]) zoom(null);
+    else if (range[0] !== undefined && JSON.stringify(range) !== JSON.stringify(view.span)) zoom(range.map(Number));
+  }
+
+  function zoom(span) {
+    view = { ...view, span };
+    window.dash_clientside.set_props("span", { data: span });
+    return redraw();
+  }
+
+  async function signals(revision, run, shown, regime, other, marks) {
+    const span = run === view.run ? view.span : null;
+    if (span !== view.span) window.dash_clientside.set_props("span", { data: null });
+    view = { run, shown, regime, other, marks, span };
+    await redraw();
+    return revision;
+  }
+
+  function whole() {
+    zoom(null);
+    return same();
+  }
+
+  // --- the response to sliders -------------------------------------------------------------------------------------
+  let stops = {};
+  let place = {};
+  let told = 0; // timer that tells the stops to the page
+  let busy = false;
+  let waiting = false;
+
+  async function response() {
+    waiting = busy;
+    if (busy) return; // the answer to the last question brings on the next
+    busy = true;
+    const outputs = [...document.querySelectorAll("#sliders [data-told]")];
+    const [chart, problem] = await fetched("response", { ...place, stops, names: outputs.map((one) => one.dataset.told) });
+    const says = document.getElementById("response-says");
+    says.textContent = problem;
+    says.hidden = !problem;
+    if (chart) {
+      outputs.forEach((one) => { one.textContent = chart.values[one.dataset.told] || ""; });
+      await draw(document.getElementById("response"), chart);
+    }
+    busy = false;
+    if (waiting) await response();
+  }
+
+  async function respond(values, _drawn, tab, run, span) {
+    if (tab !== "sliders") return same();
+    stops = { ...values };
+    place = { run, span };
+    await response();
+    return Date.now();
+  }
+
+  document.addEventListener("input", (event) => {
+    if (!event.target.matches("#sliders input[type=range]")) return;
+    stops = { ...stops, [JSON.parse(event.target.id).name]: Number(event.target.value) };
+    response();
+    clearTimeout(told);
+    told = setTimeout(() => window.dash_clientside.set_props("values", { data: stops }), 400);
+  });
+
+  // --- the page ----------------------------------------------------------------------------------------------------
+  // A chart that a callback gives, in the element it names.
+  async function place_chart(chart) {
+    if (chart) await draw(document.getElementById(chart.place), chart);
+    return same();
   }
 
   function tab(value) {
@@ -63,10 +156,7 @@ window.dash_clientside.bench = (() => {
     return value;
   }
 
-  dark.addEventListener("change", () => {
-    drawn.forEach((_, div) => div.dataset.drawn && draw(div));
-    window.dash_clientside.set_props("theme", { data: dark.matches ? "dark" : "light" });
-  });
+  dark.addEventListener("change", () => charts.forEach((chart, div) => div.dataset.drawn && draw(div, { ...chart })));
 
   // A cell of the heat map leads to the plots of its run.
   document.addEventListener("click", (event) => {
@@ -76,5 +166,5 @@ window.dash_clientside.bench = (() => {
     window.dash_clientside.set_props("wanted-run", { data: { number: Number(link.getAttribute("href").slice(5)), at: Date.now() } });
   });
 
-  return { figure, show, tab };
+  return { place: place_chart, respond, show, signals, tab, whole };
 })();
