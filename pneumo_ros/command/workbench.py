@@ -7,9 +7,9 @@ Everything it computes is a verb of this command, which it names.
 
 import argparse
 import contextlib
-import os
 import signal
 import sys
+from collections.abc import Iterator
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings
 from pneumo_ros.command.console import Console
@@ -43,8 +43,19 @@ def run(options: argparse.Namespace, console: Console) -> int:
         sys.stdout.flush()
         console.note("Open this address in a browser on this machine; Ctrl-C ends the workbench.")
 
-    signal.signal(signal.SIGTERM, lambda *_: os.kill(os.getpid(), signal.SIGINT))
-    with contextlib.suppress(KeyboardInterrupt):
+    with _ending(), contextlib.suppress(KeyboardInterrupt):
         serve(given, options.port, ready)
     console.note("The workbench has ended.")
     return 0
+
+
+@contextlib.contextmanager
+def _ending() -> Iterator[None]:
+    """SIGINT and SIGTERM interrupt, also where a shell started this in the background and had SIGINT ignored."""
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, signal.default_int_handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

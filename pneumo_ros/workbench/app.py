@@ -1,10 +1,12 @@
 """The page as a whole: its layout, its panels, and the files it is made of, all from this machine."""
 
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
 from dash import ClientsideFunction, Dash, Input, Output, dcc, html
-from flask import Flask, Response
+from flask import Flask, Response, redirect, request
+from werkzeug.wrappers import Response as AnyResponse
 
 from pneumo_ros.workbench import (
     diagnosis_panel,
@@ -60,7 +62,19 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     answer_plots(server, desks)
     save_panel.serve_files(server, desks)
     guard.protect(server, lambda: f"/b/{desks.new()}", app.csp_hashes())
+    server.before_request(partial(_led_on, desks))
     return app
+
+
+def _led_on(desks: Desks) -> AnyResponse | None:
+    """The address of a desk that is no more leads to a new one."""
+    if not request.path.startswith("/b/"):
+        return None
+    try:
+        desks.of(request.path)
+    except KeyError:
+        return redirect("/", 303)
+    return None
 
 
 def _layout() -> html.Div:

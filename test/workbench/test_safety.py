@@ -59,6 +59,11 @@ def test_the_right_token_leads_to_a_desk_and_stays_in_a_cookie_no_script_sees(se
     assert ask(served, answer.headers["Location"], Cookie=known(served)).status == 200
 
 
+def test_the_address_of_a_desk_that_is_no_more_leads_to_a_new_one(served: Served) -> None:
+    answer = ask(served, "/b/000000000000", Cookie=known(served))
+    assert (answer.status, answer.headers["Location"]) == (303, "/")
+
+
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1:1", "[::1]:{port}"])
 def test_a_foreign_host_is_refused(served: Served, host: str) -> None:
     answer = ask(served, f"/?token={served.token}", Host=host.format(port=served.port))

@@ -2,7 +2,7 @@
 "use strict";
 window.dash_clientside = window.dash_clientside || {};
 window.dash_clientside.bench = (() => {
-  const CONFIG = { displaylogo: false, responsive: true, doubleClick: false, topojsonURL: "", modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "autoScale2d"]] };
+  const CONFIG = { displaylogo: false, responsive: true, doubleClick: false, showTips: false, topojsonURL: "", modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "autoScale2d"]] };
   const same = () => window.dash_clientside.no_update;
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
   const charts = new Map(); // element that is drawn -> its chart
