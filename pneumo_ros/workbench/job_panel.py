@@ -41,7 +41,7 @@ def _look(desk: Desk, _ticks: int, seen: int | None, said: str, opened: int | No
     if seen == desk.revision and text == said and number == (opened or 0):
         raise PreventUpdate
     return (
-        desk.revision, status is None or status.state == "done", text,
+        no_update if seen == desk.revision else desk.revision, status is None or status.state == "done", text,
         str(round(100 * status.share)) if status else "0", status is None or status.state != "running",
         number, tab if number != (opened or 0) else no_update,
     )  # fmt: skip
@@ -54,12 +54,10 @@ def _cancel(desk: Desk, clicks: int | None) -> None:
 
 def words(status: Status) -> str:
     """A job in a sentence."""
+    if status.state == "failed":
+        return f"{status.title} failed: {status.message}"
     if status.state != "running":
-        return (
-            status.message
-            if status.state == "cancelled"
-            else f"{status.title} failed: {status.message}" * (status.state == "failed")
-        )
+        return status.message
     left = "" if status.left is None else f", {_duration(status.left)} left"
     return f"{status.title}: {100 * status.share:.0f} %{left}: {status.doing}"
 

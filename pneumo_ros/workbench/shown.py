@@ -1,7 +1,6 @@
 """Charts and sections of the report, as the page's script takes them."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 from pneumo_ros.report.chart import Chart, Report, Section
@@ -13,13 +12,3 @@ def content(target: str, sections: Sequence[Section], stamp: object) -> dict[str
     found = Report("", "", True, tuple(sections), {}).charts()
     charts = {chart.name: chart_json(chart) for chart in found if isinstance(chart, Chart)}
     return {"target": target, "html": "".join(section_html(s) for s in sections), "charts": charts, "stamp": stamp}
-
-
-def renamed(section: Section, prefix: str) -> Section:
-    """A section whose identifiers and charts begin with `prefix`, so that it can stand on a page beside its like."""
-    return replace(
-        section,
-        identifier=f"{prefix}{section.identifier}",
-        charts=tuple(replace(chart, name=f"{prefix}{chart.name}") for chart in section.charts),
-        parts=tuple(renamed(part, prefix) for part in section.parts),
-    )

@@ -90,11 +90,12 @@ window.dash_clientside.bench = (() => {
     return redraw();
   }
 
-  async function signals(revision, run, shown, regime, other, marks) {
+  // Callbacks start what they draw and do not wait for it: Dash would hold back every other callback meanwhile.
+  function signals(revision, run, shown, regime, other, marks) {
     const span = run === view.run ? view.span : null;
     if (span !== view.span) window.dash_clientside.set_props("span", { data: null });
     view = { run, shown, regime, other, marks, span };
-    await redraw();
+    redraw();
     return revision;
   }
 
@@ -127,11 +128,11 @@ window.dash_clientside.bench = (() => {
     if (waiting) await response();
   }
 
-  async function respond(values, _drawn, tab, run, span) {
+  function respond(values, _drawn, tab, run, span) {
     if (tab !== "sliders") return same();
     stops = { ...values };
     place = { run, span };
-    await response();
+    response();
     return Date.now();
   }
 
@@ -145,8 +146,8 @@ window.dash_clientside.bench = (() => {
 
   // --- the page ----------------------------------------------------------------------------------------------------
   // A chart that a callback gives, in the element it names.
-  async function place_chart(chart) {
-    if (chart) await draw(document.getElementById(chart.place), chart);
+  function place_chart(chart) {
+    if (chart) draw(document.getElementById(chart.place), chart);
     return same();
   }
 
