@@ -1,4 +1,4 @@
-"""What plots ask for while somebody zooms or slides: charts as JSON, straight from the desk, faster than callbacks."""
+"""What the page's script asks for by itself: charts while somebody zooms or slides, the job, the live axis. As JSON."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -9,6 +9,8 @@ from flask import Flask, Response, jsonify, request
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
+from pneumo_ros.workbench.job_panel import status_of
+from pneumo_ros.workbench.live_panel import live_of
 from pneumo_ros.workbench.response_chart import response_chart
 from pneumo_ros.workbench.signals import View, readings, signals_chart
 from pneumo_ros.workbench.thin import Span
@@ -18,7 +20,7 @@ _LONGEST = 100_000  # bytes of a question
 
 
 def answer_plots(server: Flask, desks: Desks) -> None:
-    """POST /signals/DESK and /response/DESK take a JSON object and return a chart; 400 tells what is wrong."""
+    """POST /signals/DESK and its like take a JSON object and return one; 400 tells what is wrong."""
 
     def answering(make: Callable[[Desk, Mapping[str, Any]], Any]) -> Callable[[str], Response]:
         def answer(desk: str) -> Response:
@@ -34,8 +36,9 @@ def answer_plots(server: Flask, desks: Desks) -> None:
 
         return answer
 
-    server.add_url_rule("/signals/<desk>", "signals", answering(signals_of), methods=["POST"])
-    server.add_url_rule("/response/<desk>", "response", answering(response_chart), methods=["POST"])
+    answers = {"signals": signals_of, "response": response_chart, "status": status_of, "live": live_of}
+    for name, make in answers.items():
+        server.add_url_rule(f"/{name}/<desk>", name, answering(make), methods=["POST"])
 
 
 def signals_of(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:

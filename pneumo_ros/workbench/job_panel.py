@@ -1,20 +1,22 @@
-"""The job at hand: what it does, how long it may still take, and a button that ends it."""
+"""The job at hand: what it does, how long it may still take, and a button that ends it.
 
+The page's script looks at the desk twice a second and after every action (`status_of`), and is the only one to set
+`revision`, on which all panels depend.
+"""
+
+from collections.abc import Mapping
 from typing import Any
 
-from dash import Input, Output, State, dcc, html, no_update
-from dash.exceptions import PreventUpdate
+from dash import ClientsideFunction, Input, Output, dcc, html
 
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.job import Status
 from pneumo_ros.workbench.parts import Panels, asked, button
 
-_OFTEN = 500  # ms between looks at the desk
-
 
 def layout() -> html.Div:
-    """The bar, and the clock that looks at the desk."""
-    stores = [dcc.Store(id="revision"), dcc.Store(id="opened"), dcc.Interval(id="clock", interval=_OFTEN)]
+    """The bar, and what the script sets."""
+    stores = [dcc.Store(id=name) for name in ("revision", "acted", "looked")]
     says = html.P("", id="job-says", role="status")
     bar = html.Progress(id="job-share", max="100", value="0", **{"aria-label": "Share done"})
     stop = button("Cancel", "cancel")
@@ -23,28 +25,10 @@ def layout() -> html.Div:
 
 def register(panels: Panels) -> None:
     """Callbacks of this panel."""
-    panels.show(
-        [Output("revision", "data"), Output("job", "hidden"), Output("job-says", "children"),
-         Output("job-share", "value"), Output("cancel", "hidden"), Output("opened", "data"),
-         Output("tab", "value", allow_duplicate=True)],
-        [Input("clock", "n_intervals"), State("revision", "data"), State("job-says", "children"),
-         State("opened", "data")],
-        _look, first=False,
-    )  # fmt: skip
     panels.act([Input("cancel", "n_clicks")], _cancel)
-
-
-def _look(desk: Desk, _ticks: int, seen: int | None, said: str, opened: int | None) -> tuple[Any, ...]:
-    status = desk.job.status() if desk.job else None
-    text = words(status) if status else ""
-    number, tab = desk.opened
-    if seen == desk.revision and text == said and number == (opened or 0):
-        raise PreventUpdate
-    return (
-        no_update if seen == desk.revision else desk.revision, status is None or status.state == "done", text,
-        str(round(100 * status.share)) if status else "0", status is None or status.state != "running",
-        number, tab if number != (opened or 0) else no_update,
-    )  # fmt: skip
+    panels.app.clientside_callback(
+        ClientsideFunction("bench", "look"), Output("looked", "data"), Input("acted", "data")
+    )
 
 
 def _cancel(desk: Desk, clicks: int | None) -> None:
@@ -52,8 +36,22 @@ def _cancel(desk: Desk, clicks: int | None) -> None:
         desk.cancel()
 
 
+def status_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
+    """What the page's script wants to know: the revision, the job in words, and the tab to show for its result."""
+    status = desk.job.status() if desk.job else None
+    number, tab = desk.opened
+    return {
+        "revision": desk.revision,
+        "says": words(status) if status else "",
+        "share": round(100 * status.share) if status else 0,
+        "running": status is not None and status.state == "running",
+        "opened": number,
+        "tab": tab,
+    }
+
+
 def words(status: Status) -> str:
-    """A job in a sentence."""
+    """A job in a sentence; empty when it is done."""
     if status.state == "failed":
         return f"{status.title} failed: {status.message}"
     if status.state != "running":

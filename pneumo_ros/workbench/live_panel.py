@@ -1,18 +1,18 @@
 """The live tab: what a running axis does, its parameters, a record button and the constant-voltage campaign."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from dash import ClientsideFunction, Input, Output, State, dcc, html, no_update
-from dash.exceptions import PreventUpdate
+from dash import ClientsideFunction, Input, Output, State, dcc, html
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.report.markup import Html, tag
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.live import KEPT, Live
 from pneumo_ros.workbench.parts import Panels, asked, button, revision
 from pneumo_ros.workbench.thin import packed
 
-_OFTEN = 300  # ms
 # panel -> its series: name, colour, factor
 _PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
     "position [mm]": (("position", "model", 1e3), ("setpoint", "second", 1e3), ("reference", "third", 1e3)),
@@ -42,8 +42,7 @@ def layout() -> html.Div:
             html.P("", id="live-says", role="status"),
             html.Div(id="live-plot", role="img", **{"aria-label": "The axis over the last 20 s"}),
             html.Div(id="live-status"),
-            dcc.Store(id="live-chart"), dcc.Store(id="live-shown"),
-            dcc.Interval(id="live-clock", interval=_OFTEN, disabled=True),
+            dcc.Store(id="live-on"), dcc.Store(id="live-shown"),
         ],
         id="panel-live", className="card panel", hidden=True,
     )  # fmt: skip
@@ -57,13 +56,11 @@ def register(panels: Panels) -> None:
     panels.act([Input("set", "n_clicks"), State("set-node", "value"), State("set-name", "value"),
                 State("set-value", "value")], _set)  # fmt: skip
     panels.show([Output("watch", "children"), Output("record", "children"), Output("record", "disabled"),
-                 Output("live-clock", "disabled")], [revision(), Input("tab", "value")], _buttons)  # fmt: skip
-    panels.show([Output("live-chart", "data"), Output("live-says", "children"), Output("live-status", "children"),
-                 Output("set-says", "children")],
-                [Input("live-clock", "n_intervals"), State("live-says", "children")], _look, first=False)  # fmt: skip
+                 Output("live-on", "data")], [revision()], _buttons)  # fmt: skip
     panels.app.clientside_callback(
-        ClientsideFunction("bench", "place"), Output("live-shown", "data"), Input("live-chart", "data")
-    )
+        ClientsideFunction("bench", "live"), Output("live-shown", "data"), Input("live-on", "data"),
+        Input("tab", "value"),
+    )  # fmt: skip
 
 
 def _watch(desk: Desk, clicks: int | None, namespace: str | None) -> None:
@@ -114,21 +111,22 @@ def _set(desk: Desk, clicks: int | None, node: str, name: str, value: str) -> No
     desk.live.set(node or "", name or "", number)
 
 
-def _buttons(desk: Desk, _revision: int, tab: str) -> tuple[str, str, bool, bool]:
+def _buttons(desk: Desk, _revision: int) -> tuple[str, str, bool, bool]:
     live = desk.live
     recording = live is not None and live.recording is not None
     watch, record = "Stop watching" if live else "Watch", "Stop recording" if recording else "Record"
-    return watch, record, live is None, live is None or tab != "live"
+    return watch, record, live is None, live is not None
 
 
-def _look(desk: Desk, _ticks: int, _said: str) -> tuple[Any, ...]:
+def live_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
+    """What the page's script shows of the axis: chart, sentence, what nodes say, and the answer to a setting."""
     live = desk.live
     if live is None:
-        raise PreventUpdate
+        return {"chart": None, "says": "", "status": "", "answer": ""}
     curves = live.curves()
-    if not curves:
-        return no_update, "Nothing is heard yet: does an axis run in this namespace?", _status(live), live.answer
-    return live_chart(curves), state(curves), _status(live), live.answer
+    says = state(curves) if curves else "Nothing is heard yet: does an axis run in this namespace?"
+    return {"chart": live_chart(curves) if curves else None, "says": says, "status": _status(live),
+            "answer": live.answer}  # fmt: skip
 
 
 def state(curves: dict[str, tuple[list[float], list[float]]]) -> str:
@@ -150,7 +148,7 @@ def live_chart(curves: dict[str, tuple[list[float], list[float]]]) -> dict[str, 
         traces = [_trace(name, role, factor, curves[name]) for name, role, factor in own if name in curves]
         panels += [{"title": title, "share": 1, "ticks": [], "traces": traces}] if traces else []
     return {"title": "live", "x": "time [s]", "link": "live", "span": [last - KEPT, last], "logX": False,
-            "legend": True, "panels": panels, "place": "live-plot", "height": 90 + 125 * len(panels)}  # fmt: skip
+            "legend": True, "panels": panels, "height": 90 + 125 * len(panels)}  # fmt: skip
 
 
 def _trace(name: str, role: str, factor: float, curve: tuple[list[float], list[float]]) -> dict[str, Any]:
@@ -160,12 +158,12 @@ def _trace(name: str, role: str, factor: float, curve: tuple[list[float], list[f
             "y": packed(factor * values)}  # fmt: skip
 
 
-def _status(live: Live) -> Any:
+def _status(live: Live) -> Html:
     """What every node says of itself."""
     signs = ("good", "warning", "bad")
     rows = []
     for name, one in sorted(live.status.items()):
         values = ", ".join(f"{key} {value}" for key, value in one["values"].items())
-        more = html.Ul(html.Li(values)) if values else None
-        rows.append(html.Li([html.B(f"{name}: {one['message']}"), more], className=signs[min(one["level"], 2)]))
-    return html.Section([html.H2("Diagnostics"), html.Ul(rows, className="findings")]) if rows else None
+        more = tag("ul", tag("li", values)) if values else ""
+        rows.append(tag("li", tag("b", f"{name}: {one['message']}"), more, class_=signs[min(one["level"], 2)]))
+    return Html(tag("h2", "Diagnostics") + tag("ul", rows, class_="findings")) if rows else Html()

@@ -12,7 +12,7 @@ from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
 
 WHERE = State("url", "pathname")
-CHANGED = Output("revision", "data", allow_duplicate=True)
+ACTED = Output("acted", "data", allow_duplicate=True)  # upon which the page looks at the desk
 
 
 class Panels:
@@ -25,7 +25,16 @@ class Panels:
         self, outputs: Sequence[Output], inputs: Sequence[Any], render: Callable[..., Any], *, first: bool = True
     ) -> None:
         """`render(desk, *inputs)` gives the outputs whenever an input changes, and at first if `first`."""
-        self.app.callback(list(outputs), list(inputs), WHERE, prevent_initial_call=not first)(self._on_desk(render))
+
+        def drawn(desk: Desk, *values: Any) -> Any:
+            try:
+                return render(desk, *values)
+            except PneumoError as problem:  # a file that was there is gone, say
+                if desk.message != str(problem):
+                    desk.say(problem)
+                raise PreventUpdate from problem
+
+        self.app.callback(list(outputs), list(inputs), WHERE, prevent_initial_call=not first)(self._on_desk(drawn))
 
     def act(self, inputs: Sequence[Any], do: Callable[..., None]) -> None:
         """`do(desk, *inputs)` changes the desk when an input changes; what goes wrong is said on the page."""
@@ -40,7 +49,7 @@ class Panels:
                 raise PreventUpdate  # what is drawn anew asks, too
             return desk.revision
 
-        self.app.callback(CHANGED, list(inputs), WHERE, prevent_initial_call=True)(self._on_desk(change))
+        self.app.callback(ACTED, list(inputs), WHERE, prevent_initial_call=True)(self._on_desk(change))
 
     def _on_desk(self, function: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(function)

@@ -145,9 +145,56 @@ window.dash_clientside.bench = (() => {
   });
 
   // --- the page ----------------------------------------------------------------------------------------------------
-  // A chart that a callback gives, in the element it names.
-  function place_chart(chart) {
-    if (chart) draw(document.getElementById(chart.place), chart);
+  // Looks at the desk: what runs, and whether there is something new to show.
+  const seen = { revision: null, says: null, share: null, running: null, opened: 0 };
+  let looking = false;
+
+  function set(key, now, ...places) {
+    if (seen[key] === now) return;
+    seen[key] = now;
+    places.forEach(([place, props]) => window.dash_clientside.set_props(place, props));
+  }
+
+  async function look() {
+    if (looking) return;
+    looking = true;
+    try {
+      const [now, problem] = await fetched("status", {});
+      if (!now) throw new Error(problem);
+      set("says", now.says, ["job-says", { children: now.says }], ["job", { hidden: !now.says }]);
+      set("share", now.share, ["job-share", { value: String(now.share) }]);
+      set("running", now.running, ["cancel", { hidden: !now.running }]);
+      set("revision", now.revision, ["revision", { data: now.revision }]);
+      if (now.opened !== seen.opened) set("opened", now.opened, ["tab", { value: now.tab }]);
+    } catch (error) {
+      const text = "The workbench does not answer; was it ended?";
+      set("says", text, ["job-says", { children: text }], ["job", { hidden: false }], ["cancel", { hidden: true }]);
+    } finally {
+      looking = false;
+    }
+  }
+
+  function acted() {
+    look();
+    return same();
+  }
+
+  // --- the live axis -----------------------------------------------------------------------------------------------
+  let watching = 0;
+
+  async function heard(mine) {
+    const [now] = await fetched("live", {});
+    if (!now || mine !== watching) return;
+    document.getElementById("live-says").textContent = now.says;
+    document.getElementById("set-says").textContent = now.answer;
+    document.getElementById("live-status").innerHTML = now.status; // escaped by the server
+    if (now.chart) await draw(document.getElementById("live-plot"), now.chart);
+    setTimeout(() => mine === watching && heard(mine), 250);
+  }
+
+  function live(on, tab) {
+    watching += 1;
+    if (on && tab === "live") heard(watching);
     return same();
   }
 
@@ -167,5 +214,12 @@ window.dash_clientside.bench = (() => {
     window.dash_clientside.set_props("wanted-run", { data: { number: Number(link.getAttribute("href").slice(5)), at: Date.now() } });
   });
 
-  return { place: place_chart, respond, show, signals, tab, whole };
+  const begin = setInterval(() => {
+    if (!window.dash_clientside.set_props || !document.getElementById("tab")) return;
+    clearInterval(begin);
+    look();
+    setInterval(look, 500);
+  }, 50);
+
+  return { live, look: acted, respond, show, signals, tab, whole };
 })();
