@@ -6,6 +6,7 @@ until the response is, both in the page, by the browser's clock.
 """
 
 import argparse
+import os
 import statistics
 import subprocess
 import sys
@@ -49,6 +50,7 @@ def main() -> None:
             (f"zoom of 3 x {SAMPLES:,} samples, until redrawn", "zoom", zoom, "s"),
             ("slider, until the response is drawn", "slider", slider, "s"),
         ]
+    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}")
     print(f"{'':44}{'median':>10}{'worst':>10}   target")
     for words, key, values, unit in rows:
         worst = max(values)

@@ -8,30 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rig import bags, case, effects
+from workbench.leaking import record_leaking
 from workbench.tab import Tab
-
-LEAK = "cross_piston_leakage"
-SECONDS = 8.0
-STEP = 4e-5  # s, of the rig
 
 
 @pytest.fixture(scope="session")
 def leaking(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two recordings of a machine whose piston leaks, one of them to hold out."""
     folder = tmp_path_factory.mktemp("leaking")
-    machine = effects.build(5, [effects.parse(f"{LEAK}=3e-10")])
-    for run in case.make_runs(machine, ("train_steps", "holdout_steps"), STEP):
-        bags.write(folder / run.name, _first(run), case.epoch(5))
+    record_leaking(folder)
     return folder
-
-
-def _first(run: Any) -> Any:
-    """The beginning of a run."""
-    n = round(SECONDS * 1000)
-    names = ("stamps", "log_times", "position", "pressure_a", "pressure_b", "voltage", "truth")
-    cut = {name: getattr(run, name)[:n] for name in names}
-    return run._replace(command_index=run.command_index[run.command_index < n], **cut)
 
 
 class Served:

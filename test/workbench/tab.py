@@ -10,7 +10,7 @@ class Tab:
     def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
         self.page = context.new_page()
-        self.page.set_default_timeout(60_000)
+        self.page.set_default_timeout(300_000)  # a busy machine is no failure
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.clicks = 0
@@ -58,7 +58,7 @@ class Tab:
 
     def wait_for_traces(self, ready: Any) -> list[dict[str, Any]]:
         """Until what the plot shows is `ready`."""
-        for _ in range(200):
+        for _ in range(1200):
             found = self.traces() if self.page.locator("#signals .main-svg").count() else []
             if ready(found):
                 return found

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from workbench.conftest import SECONDS
+from workbench.leaking import SECONDS
 from workbench.tab import Tab
 
 from pneumo_ros.records import read_recording

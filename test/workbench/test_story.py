@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from workbench.conftest import LEAK
+from workbench.leaking import LEAK
 from workbench.tab import Tab
 
 from pneumo_ros.plant import load_model
