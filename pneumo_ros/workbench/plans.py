@@ -75,7 +75,7 @@ def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) 
         label = "refitted"
     line, bags = _compare(bench, machine, number)
     lines = (Line(tuple(words), _EFFECT_LINE), line)
-    return Plan("Refitting", label, lines, bags, f"compared_{number}", machine, made)
+    return Plan("Refitting", label, lines, bags, f"compared_{number}", machine=machine, made=made)
 
 
 def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
@@ -88,7 +88,7 @@ def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
     words += ["--json", f"{made}.json", "--report", f"{made}.html"]
     line, bags = _compare(bench, machine, number)
     lines = (Line(tuple(words), _DIAGNOSE_LINE), line)
-    return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine, made)
+    return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine=machine, made=made)
 
 
 def campaign_plan(bench: Bench, namespace: str, folder: str) -> Plan:

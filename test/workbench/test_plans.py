@@ -23,7 +23,9 @@ HOW = "--model axis_1.yaml --effects /data/mine.py --namespace rig --read-as bar
 
 
 def test_refit_is_add_with_the_recordings_in_their_roles() -> None:
-    add, compare = refit_plan(BENCH, ["payload_mass"], "axis_2.yaml", 3).shown()
+    plan = refit_plan(BENCH, ["payload_mass"], "axis_2.yaml", 3)
+    assert (plan.machine, plan.made, plan.compared, plan.recordings) == ("axis_2.yaml", "made_3", "compared_3", "")
+    add, compare = plan.shown()
     files = "--out axis_2.yaml --json made_3.json --report made_3.html"
     assert add == f"pneumo add payload_mass /data/a --holdout /data/b {HOW} {files}"
     assert compare.startswith("pneumo compare /data/a /data/b --model axis_2.yaml ")
