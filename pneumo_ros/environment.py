@@ -35,8 +35,12 @@ LIBRARIES = {
     "zstandard": ("zstandard", None),
     "plotly": ("plotly", "python3-plotly"),  # for reports only, and so is the next
     "matplotlib": ("matplotlib", "python3-matplotlib"),
+    "dash": ("dash", None),  # for the workbench only, and so is the next
+    "waitress": ("waitress", "python3-waitress"),
+    "rich": ("rich", "python3-rich"),  # for pneumo view only
 }
-NEEDED = tuple(name for name in LIBRARIES if name not in ("plotly", "matplotlib"))
+OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich")
+NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 
 

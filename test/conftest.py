@@ -3,7 +3,9 @@
 import os
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,6 +23,16 @@ os.environ["ROS_LOG_DIR"] = LOGS.name
 os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
 # The wheels start Python a second time to find their libraries; a Python of another environment must do so itself.
 os.environ.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """A running browser for all tests that need one; they are skipped, with the reason, where there is none."""
+    from report.browser import chromium
+
+    with chromium() as running:
+        yield running
+
 
 # Of tests that run side by side, those with nodes or browsers in real time follow one another: they come first, in one
 # process, and what only computes goes to the other, file by file.

@@ -42,8 +42,8 @@ class Parser(argparse.ArgumentParser):
         return f"unexpected argument '{given}'"
 
 
-def add_recordings(parser: argparse.ArgumentParser) -> None:
-    """--namespace, --joint and --read-as: which axis of a recording is meant, and how to read it."""
+def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None:
+    """--namespace, --joint and --read-as: which axis is meant, and how to read it; if `cut`, --cut: what of it."""
     parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
     parser.add_argument("--joint", metavar="NAME", help="the piston in joint_states, where these hold several joints")
     parser.add_argument(
@@ -53,6 +53,11 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         help="read recordings that are not in SI units and absolute pressures, or wired otherwise: bar, kPa, hPa, MPa, "
         "psi; gauge; mm; swapped-chambers, reversed-position, reversed-voltage",
     )
+    if cut:
+        parser.add_argument(
+            "--cut", metavar="BAG:FROM-TO", action="append", default=[],
+            help="leave these seconds of a recording out, such as run_3:2.5-4; may be repeated",
+        )  # fmt: skip
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:

@@ -6,6 +6,7 @@ one fails, the regimes, the variables and the intervals that hold most of the er
 """
 
 import argparse
+import io
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
@@ -16,6 +17,7 @@ from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.diagnose.findings import findings, verdict
 from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, TARGETS
 from pneumo_ros.errors import UsageError
+from pneumo_ros.files import check_writable, write_whole
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison, RunComparison
@@ -33,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_refit(parser)
     add_model(parser)
     add_report(parser)
+    parser.add_argument("--series", metavar="FILE.npz", help="write what is measured and predicted as numpy arrays")
     add_output(parser)
 
 
@@ -43,6 +46,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if not options.horizon > 0.0:
         raise UsageError(f"--horizon {options.horizon:g} is no length of time; give seconds, such as --horizon 1")
     report = prepare_report(options)
+    if options.series:
+        check_writable(options.series)
     model = chosen_model(options)
     runs = read_runs(options.bags, options, console, model)
     model, refit = refitted(options, console, model, runs)
@@ -51,8 +56,20 @@ def run(options: argparse.Namespace, console: Console) -> int:
     result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
     _print(console, model, comparison, result)
     console.json(result)
+    if options.series:
+        _write_series(comparison, options.series)
     report.publish(console, lambda origin: _report(result, comparison, model, origin))
     return 0
+
+
+def _write_series(comparison: "Comparison", path: str) -> None:
+    import numpy as np
+
+    from pneumo_ros.diagnose.arrays import comparison_arrays
+
+    packed = io.BytesIO()
+    np.savez(packed, **comparison_arrays(comparison))  # type: ignore[arg-type]  # a stub of numpy takes them for flags
+    write_whole(path, packed.getvalue())
 
 
 def _report(result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]) -> "Report":

@@ -2,10 +2,8 @@
 
 import argparse
 import inspect
-import math
-import re
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pneumo_ros.command.arguments import add_model, add_output, chosen_model
 from pneumo_ros.command.console import Console, columns
@@ -27,6 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """List the catalogue, or explain one effect."""
+    from pneumo_ros.plant.catalogue import catalogue, record
+
     model = chosen_model(options)
     effects = catalogue(model)
     if options.name is None:
@@ -41,25 +41,10 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-def catalogue(model: "Model") -> dict[str, "type[Effect]"]:
-    """Name -> effect: the frame of every machine, then all effects at hand, room by room."""
-    from pneumo_ros.plant.library import FRAME
-
-    library = model.library
-    found = [library.frame(name) for name in FRAME] + [library.find(name) for name in library.names()]
-    order = ("frame", "valve", "line", "chamber", "piston", "friction", "sensor")
-    found.sort(key=lambda effect: order.index(room(effect)) if room(effect) in order else len(order))
-    return {effect.name: effect for effect in found}
-
-
-def room(effect: "type[Effect]") -> str:
-    """The part of the machine an effect belongs to: its folder in the catalogue, else the module it comes from."""
-    parts = effect.__module__.split(".")
-    return parts[3] if parts[:3] == ["pneumo_ros", "plant", "effects"] else parts[0].removeprefix("pneumo_effects_")
-
-
 def listing(effects: dict[str, "type[Effect]"], model: "Model") -> str:
     """One line for each effect, under the part of the machine it belongs to; a star marks those of `model`."""
+    from pneumo_ros.plant.catalogue import room, summary
+
     inside = {effect.name for effect in model.composition.effects}
     rows = {name: (f" {'*' if name in inside else ' '} {name}", summary(effect)) for name, effect in effects.items()}
     lines = dict(zip(rows, columns(list(rows.values())).splitlines(), strict=True))
@@ -72,15 +57,10 @@ def listing(effects: dict[str, "type[Effect]"], model: "Model") -> str:
     return "\n".join((*text[1:], "", f"* in the machine '{model.name}'. Equations and parameters: pneumo effects NAME"))
 
 
-def summary(effect: "type[Effect]") -> str:
-    """First sentence of the docstring, up to its equation if a colon announces one; at most 90 letters."""
-    first = " ".join(inspect.cleandoc(effect.__doc__ or "").split("\n\n")[0].split())
-    sentence = re.split(r"[:;]|\.(?= [A-Z]|$)", first)[0]  # "Eqs. 1-2" does not end one
-    return textwrap.shorten(sentence, 90, placeholder=" ...")
-
-
 def explanation(effect: "type[Effect]", model: "Model") -> str:
     """All there is to know of one effect, as text."""
+    from pneumo_ros.plant.catalogue import body, room
+
     parts = [f"{effect.name}  ({room(effect)})", inspect.cleandoc(effect.__doc__ or "")]
     if effect.signature:
         parts.append(f"Recognised by: {effect.signature}")
@@ -110,38 +90,3 @@ def parameter_rows(effect: "type[Effect]", model: "Model") -> list[tuple[str, ..
         )
         for name, parameter in effect.parameters.items()
     ]
-
-
-def body(effect: "type[Effect]", name: str) -> str:
-    """The statements of an effect's function as they are written."""
-    first = effect.functions[name].tree.body[0]
-    source = textwrap.dedent(inspect.getsource(vars(effect)[name])).splitlines()
-    return textwrap.dedent("\n".join(source[first.lineno - 1 :]))
-
-
-def record(effect: "type[Effect]", model: "Model") -> dict[str, Any]:
-    """One effect for JSON; a range without end is null there."""
-    functions = effect.functions.values()
-    return {
-        "name": effect.name,
-        "room": room(effect),
-        "in_model": effect.name in {used.name for used in model.composition.effects},
-        "description": inspect.cleandoc(effect.__doc__ or ""),
-        "signature": effect.signature,
-        "source": effect.source,
-        "equations": {name: body(effect, name) for name in effect.functions},
-        "reads": sorted({name for function in functions for name in function.reads}),
-        "writes": sorted({name for function in functions for name in function.writes}),
-        "states": {name: {"unit": state.unit, "meaning": state.meaning} for name, state in effect.states.items()},
-        "parameters": {
-            name: {
-                "value": model.parameters.get(f"{effect.name}.{name}", parameter.default),
-                "default": parameter.default,
-                "unit": parameter.unit,
-                "meaning": parameter.meaning,
-                "low": None if math.isinf(parameter.low) else parameter.low,
-                "high": None if math.isinf(parameter.high) else parameter.high,
-            }
-            for name, parameter in effect.parameters.items()
-        },
-    }

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from pneumo_ros.records import Recording
 
 ATMOSPHERE = 101325.0  # Pa, for machines that do not say
-_FILES = (".mcap", ".db3")
 
 
 def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
@@ -23,10 +22,12 @@ def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
 
     What is named twice is taken once. Raises DataError for a folder that holds none.
     """
+    from pneumo_ros.records.folders import recordings_in
+
     found: dict[str, bool] = {}
     seen: set[Path] = set()
     for name in named:
-        inside = _inside(Path(name))
+        inside = recordings_in(Path(name))
         for path in inside or [Path(name)]:
             if path.resolve() in seen:
                 console.note(f"{path} is named twice and taken once")
@@ -36,23 +37,9 @@ def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
     return found
 
 
-def _inside(folder: Path) -> list[Path]:
-    """The recordings in a folder that is no recording itself, by name."""
-    if not folder.is_dir() or (folder / "metadata.yaml").exists():
-        return []
-    entries = sorted(folder.iterdir())
-    folders = [entry for entry in entries if entry.is_dir() and _holds_files(entry)]
-    if not folders:  # one recording whose recorder was killed, or nothing; reading tells
-        return []
-    return sorted([*folders, *(entry for entry in entries if entry.suffix in _FILES)])
-
-
-def _holds_files(folder: Path) -> bool:
-    return (folder / "metadata.yaml").exists() or any(entry.suffix in _FILES for entry in folder.iterdir())
-
-
 def read_run(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "tuple[Recording, Run]":
     """One recording as `options` say, and on a uniform grid; notes and errors as `read_runs`."""
+    from pneumo_ros.identify.cuts import parse_cuts, without
     from pneumo_ros.identify.plausible import check_run
     from pneumo_ros.identify.run import make_run
     from pneumo_ros.records import read_recording
@@ -63,7 +50,8 @@ def read_run(path: str, options: argparse.Namespace, console: Console, model: "M
     recording = corrected(recording, words, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
     for warning in recording.warnings:
         console.note(f"{recording.name}: {warning}")
-    run = make_run(recording, model.force_driven)
+    cuts = parse_cuts(getattr(options, "cut", ()))  # not every verb has the option
+    run = without(make_run(recording, model.force_driven), cuts.get(Path(path).resolve(), ()))
     for note in check_run(model, run):
         console.note(f"{recording.name}: {note}.")
     return recording, run

@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, metavar="S", help=f"how long (default: the input, else {SECONDS:g})")
     parser.add_argument("--rate", type=float, metavar="HZ", help=f"samples per second (default: {RATE:g})")
     parser.add_argument("--position", type=float, metavar="M", help="where the piston starts (default: 0)")
-    add_recordings(parser)
+    add_recordings(parser, cut=False)
     add_model(parser)
     add_output(parser)
 

@@ -42,7 +42,8 @@ def _run(run: "RunComparison", total: dict[str, float]) -> dict[str, Any]:
         "error": {
             name: {
                 "rms": e.rms, "max": e.max, "fit_percent": e.fit_percent, "noise": e.noise,
-                "ratio_to_noise": e.ratio, "explained_by_noise": e.explained_by_noise, **_located(run, name, total),
+                "ratio_to_noise": e.ratio, "typical_ratio_to_noise": e.typical,
+                "explained_by_noise": e.explained_by_noise, **_located(run, name, total),
             }
             for name, e in run.error.items()
         },

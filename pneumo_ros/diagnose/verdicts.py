@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 # square over overlapping windows adds, which falls with the root of their number
 _EXPLAINED, _SCATTER = 1.1, 3.0
 _SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
+FARTHEST = 1e6  # noise deviations: no error counts as larger in the size of a window
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class SignalError:
     max: float
     fit_percent: float  # 100 (1 - |error| / |measured - its mean|)
     noise: float
+    typical: float = math.nan  # geometric mean over windows of their rms over noise: one bad window decides nothing
 
     @property
     def ratio(self) -> float:
@@ -62,11 +64,18 @@ def _judge(parts: list[Residual]) -> EquationVerdict:
 
 
 def judge_signal(error: Array, measured: Array, noise: float) -> SignalError:
-    """Judge prediction errors beside what was measured at the same samples, both of one shape and unit."""
+    """Judge prediction errors (windows, samples) beside what was measured at the same samples, both of one unit."""
     spread = float(np.std(measured))
     rms = root_mean_square(error)
     fit = 100.0 * (1.0 - rms / spread) if spread > 0.0 else math.nan
-    return SignalError(rms, float(np.nanmax(np.abs(error))), fit, noise)
+    typical = float(np.exp(np.mean(np.log(window_sizes(error, noise)))))
+    return SignalError(rms, float(np.nanmax(np.abs(error))), fit, noise, typical)
+
+
+def window_sizes(error: Array, noise: float) -> Array:
+    """Rms over noise (windows,) of prediction errors (windows, samples), both in one unit; never zero."""
+    size = np.sqrt(np.nanmean(np.minimum(np.abs(error / noise), FARTHEST) ** 2, axis=1))
+    return np.asarray(np.maximum(size, 1e-3))
 
 
 def root_mean_square(values: Array) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.diagnose.verdicts import window_sizes
 from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.windows import predict
@@ -16,7 +17,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-HORIZON, FARTHEST = 1.0, 1e6  # s, and noise deviations: no error counts as larger
+HORIZON = 1.0  # s
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 
 
@@ -26,8 +27,7 @@ def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
     for run in runs:
         noise = run_noise(run)
         for name, error in predict(model, run, HORIZON).errors.items():
-            size = np.sqrt(np.nanmean(np.minimum(np.abs(error / noise[name]), FARTHEST) ** 2, axis=1))
-            logs.setdefault(name, []).append(np.log(np.maximum(size, 1e-3)))
+            logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
     return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}
 
 

@@ -35,13 +35,14 @@ def _equation(name: str, found: dict[str, Any]) -> Section:
         f"equation-{name}",
         f"{EQUATIONS[name][0].capitalize()}: {state}",
         tag("p", words if order else f"{size}. Too few windows to look for a dependence."),
-        charts=tuple(_chart(name, variable, found["against"][variable]) for variable in order),
+        charts=tuple(dependence_chart(name, variable, found["against"][variable]) for variable in order),
         folded=found["explained_by_noise"] is not False,
         columns=2,
     )
 
 
-def _chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
+def dependence_chart(equation: str, variable: str, found: dict[str, Any]) -> Chart:
+    """The residual of an equation over bins of a variable; `found` is their entry in the JSON of `compare`."""
     _, unit, factor = EQUATIONS[equation]
     words, x_unit, x_factor = VARIABLES[variable]
     at, mean, low, high, noise, seconds, begin, end = (

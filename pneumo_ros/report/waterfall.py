@@ -29,10 +29,11 @@ def waterfall_section(outcome: "Outcome") -> Section:
     )
     signals = Section("held-out-signals", "Signal by signal", _signals(outcome))
     body = tag("p", text, class_="soft")
-    return Section("held-out", "Held-out error", body, charts=(_chart(outcome.course),), parts=(signals,))
+    return Section("held-out", "Held-out error", body, charts=(waterfall_chart(outcome.course),), parts=(signals,))
 
 
-def _chart(course: Sequence[tuple[str, float]]) -> Chart:
+def waterfall_chart(course: Sequence[tuple[str, float]]) -> Chart:
+    """A bar for each model of a course (name, error in noise floors): as given, refitted, then what was added."""
     names, errors = [effect_words(name) for name, _ in course], np.array([error for _, error in course])
     lowest, highest = min(float(errors.min()), 1.0), max(float(errors.max()), 1.0)
     log = highest / lowest > _DECADES

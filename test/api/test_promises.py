@@ -10,7 +10,7 @@ import pytest
 
 import pneumo_ros
 
-PURE = ("plant", "records", "control", "identify", "diagnose", "command")
+PURE = ("plant", "records", "control", "identify", "diagnose", "command", "workbench")
 
 
 def public_modules() -> Iterator[str]:

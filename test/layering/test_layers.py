@@ -24,8 +24,19 @@ ALLOWED = {
     "experiment": {"identify", "plant", "records", "control"},
     "discover": {"diagnose", "identify", "plant", "records", "control"},
     "report": {"discover", "diagnose", "identify", "plant", "records", "control"},
+    "workbench": {"report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "ros": {"discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
-    "command": {"report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
+    "command": {
+        "workbench",
+        "report",
+        "discover",
+        "experiment",
+        "diagnose",
+        "identify",
+        "plant",
+        "records",
+        "control",
+    },
     "__main__": {"command"},
 }
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", "rosidl_runtime_py", "rosbag2_py"}

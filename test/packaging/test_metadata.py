@@ -18,10 +18,14 @@ from pneumo_ros.environment import LIBRARIES, ROS_MODULES
 ROOT = Path(__file__).parents[2]
 PACKAGE_XML = ElementTree.parse(ROOT / "package.xml").getroot()
 # import name -> rosdep key, for what pip and rosdep call differently
-ROSDEP = {name: f"python3-{name}" for name in ("numpy", "scipy", "numba", "yaml", "plotly", "matplotlib")}
-BY_PIP_ONLY = {"rosbags", "mcap", "apsw", "lz4", "zstandard"}  # rosbags and mcap have no rosdep key and bring the rest
+ROSDEP = {name: f"python3-{name}" for name in (
+    "numpy", "scipy", "numba", "yaml", "plotly", "matplotlib", "rich", "waitress",
+)}  # fmt: skip
+# rosbags, mcap and dash have no rosdep key; the former two bring the rest
+BY_PIP_ONLY = {"rosbags", "mcap", "apsw", "lz4", "zstandard", "dash"}
 WITHOUT_WHEELS = {"control_msgs"}  # without it there is no action; the rest works
-PART_OF = {"builtin_interfaces": "std_msgs", "llvmlite": "numba"}  # always there with the other, in its version
+# always there with the other, in its version
+PART_OF = {"builtin_interfaces": "std_msgs", "llvmlite": "numba", "flask": "dash", "werkzeug": "dash"}
 
 
 def setup_arguments() -> dict[str, Any]:
@@ -82,7 +86,7 @@ def test_email_is_one_colcon_accepts() -> None:
 def test_everything_imported_is_declared() -> None:
     declared = {element.text for tag in ("depend", "exec_depend") for element in PACKAGE_XML.findall(tag)}
     extras = SETUP["extras_require"]
-    asked = [*SETUP["install_requires"], *extras["report"], *extras["figures"]]
+    asked = [*SETUP["install_requires"], *extras["report"], *extras["figures"], *extras["workbench"]]
     required = {re.split(r"[<>=]", name)[0] for name in asked}
     for name in third_party_imports():
         name = PART_OF.get(name, name)

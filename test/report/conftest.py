@@ -1,20 +1,13 @@
-"""One browser and one page for all tests of reports; every test opens the page anew."""
+"""One page for all tests of reports; every test opens it anew."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from report.browser import Visit, chromium
+from report.browser import Visit
 from report.pages import compared, report_of
 
 from pneumo_ros.report.page import page_html
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    """A running browser; the test is skipped, with the reason, where there is none."""
-    with chromium() as running:
-        yield running
 
 
 @pytest.fixture(scope="session")

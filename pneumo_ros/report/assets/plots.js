@@ -86,7 +86,7 @@ const Plots = (() => {
     const rows = chart.panels.every((panel) => panel.ticks.length);
     const whole = chart.span && chart.logX ? chart.span.map(Math.log10) : chart.span; // a logarithmic axis is ranged in decades
     const total = chart.panels.reduce((sum, panel) => sum + panel.share, 0);
-    const gap = chart.panels.length > 1 ? 0.05 : 0;
+    const gap = chart.panels.length > 1 ? Math.min(0.05, 0.2 / (chart.panels.length - 1)) : 0;
     const result = {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: ink, size: width < 500 ? 11 : 12 },
       margin: { l: left, r: 12, t: chart.legend ? 28 : 10, b: 44 }, hovermode: rows ? "closest" : "x", dragmode: coarse.matches ? false : "zoom",

@@ -1,0 +1,126 @@
+"""A quick look at recordings in the terminal: what is in them, how each signal goes, and what is wrong with them.
+
+BAG may be a folder of recordings. Exit code 3 when none of them can be read.
+"""
+
+import argparse
+import io
+import shutil
+import sys
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_output, add_recordings
+from pneumo_ros.command.console import Console
+from pneumo_ros.command.recordings import ATMOSPHERE, expanded
+from pneumo_ros.environment import require_libraries
+from pneumo_ros.errors import DataError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from pneumo_ros.records import Recording
+
+BLOCKS = " \u2581\u2582\u2583\u2584\u2585\u2586\u2587\u2588"
+GAP = "\u00b7"  # nothing was measured there
+WIDE = 40  # letters of a sparkline, where the terminal has room
+# field of a recording -> words, unit shown, factor from SI
+SHOWN = {
+    "position": ("position", "mm", 1e3), "velocity": ("velocity", "m/s", 1.0),
+    "pressure_a": ("pressure a", "bar", 1e-5), "pressure_b": ("pressure b", "bar", 1e-5),
+    "supply_pressure": ("supply pressure", "bar", 1e-5), "voltage": ("voltage", "V", 1.0),
+    "effort": ("effort", "N", 1.0),
+}  # fmt: skip
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """BAG..., how to read them, and the output."""
+    parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings, or folders of recordings")
+    add_recordings(parser, cut=False)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Read each, print it, and say which could not be read."""
+    require_libraries(("rich",))
+    paths, found, problems = expanded(options.bags, console), list[dict[str, Any]](), list[str]()
+    for path in paths:
+        try:
+            recording = _read(path, options)
+        except DataError as problem:
+            problems.append(str(problem))
+            console.note(f"Passed over: {problem}")
+            continue
+        found.append(summary(recording))
+        console.say(text(recording))
+    if not found:
+        raise DataError(problems[-1])
+    console.json({"schema_version": 1, "recordings": found, "passed_over": problems})
+    return 0
+
+
+def _read(path: str, options: argparse.Namespace) -> "Recording":
+    from pneumo_ros.records import read_recording
+    from pneumo_ros.records.corrections import corrected, parse_words
+
+    recording = read_recording(path, options.namespace, options.joint)
+    return corrected(recording, parse_words(options.read_as), ATMOSPHERE)
+
+
+def summary(recording: "Recording") -> dict[str, Any]:
+    """One recording for JSON, SI units."""
+    import numpy as np
+
+    signals = {}
+    for name in SHOWN:
+        values = getattr(recording, name)
+        if values is not None:
+            signals[name] = {"low": np.nanmin(values), "high": np.nanmax(values), "mean": np.nanmean(values)}
+    return {
+        "name": recording.name, "path": recording.path, "namespace": recording.namespace,
+        "joint": recording.joint_name, "duration_s": recording.duration, "samples": len(recording),
+        "sample_time_s": recording.sample_time, "force_driven": recording.force_driven,
+        "warnings": list(recording.warnings), "signals": signals,
+    }  # fmt: skip
+
+
+def text(recording: "Recording") -> str:
+    """A recording as a table, with a line of blocks for each signal over its time."""
+    import numpy as np
+    from rich.console import Console as Rich
+    from rich.table import Table
+
+    columns = shutil.get_terminal_size().columns
+    rate = f"{len(recording)} samples at {1.0 / recording.sample_time:.0f} Hz"
+    head = f"{recording.name}: {recording.duration:.1f} s, {rate}"
+    place = f", namespace {recording.namespace}" if recording.namespace else ""
+    table = Table(title=head + place, title_justify="left", title_style="bold")
+    for name in ("signal", "lowest", "mean", "highest"):
+        table.add_column(name, justify="left" if name == "signal" else "right", no_wrap=True)
+    width = min(max(columns - 56, 10), WIDE)
+    table.add_column(f"0 to {recording.duration:.1f} s", no_wrap=True)
+    for name, (words, unit, factor) in SHOWN.items():
+        values = getattr(recording, name)
+        if values is not None:
+            numbers = (f"{factor * pick(values):.4g} {unit}" for pick in (np.nanmin, np.nanmean, np.nanmax))
+            table.add_row(words, *numbers, sparkline(recording.time, values, width))
+    stream = io.StringIO()
+    rich = Rich(file=stream, width=columns, force_terminal=sys.stdout.isatty(), highlight=False)
+    rich.print(table)
+    for warning in recording.warnings:
+        rich.print(f"  {warning}", markup=False, soft_wrap=True)
+    return stream.getvalue().rstrip("\n")
+
+
+def sparkline(time: "NDArray[np.float64]", values: "NDArray[np.float64]", width: int) -> str:
+    """Values (n,) over time (n,) as `width` blocks, each as high as their mean there; a dot where there is none."""
+    import numpy as np
+
+    place = np.minimum(((time - time[0]) / (time[-1] - time[0]) * width).astype(int), width - 1)
+    good = np.isfinite(values)
+    count = np.bincount(place[good], minlength=width)
+    mean = np.bincount(place[good], values[good], minlength=width) / np.maximum(count, 1)
+    low, high = mean[count > 0].min(), mean[count > 0].max()
+    rise = (mean - low) / (high - low) if high > low else np.full(width, 0.5)
+    level = np.clip(1 + np.floor(rise * 8.0), 1, 8).astype(int)
+    return "".join(BLOCKS[k] if n else GAP for k, n in zip(level.tolist(), count.tolist(), strict=True))

@@ -1,0 +1,110 @@
+"""The page as a whole: its layout, its panels, and the files it is made of, all from this machine."""
+
+from functools import partial
+from importlib.resources import files
+from pathlib import Path
+
+from dash import ClientsideFunction, Dash, Input, Output, dcc, html
+from flask import Flask, Response, redirect, request
+from werkzeug.wrappers import Response as AnyResponse
+
+from pneumo_ros.workbench import (
+    diagnosis_panel,
+    error_panel,
+    failures_panel,
+    job_panel,
+    live_panel,
+    machine_panel,
+    recordings_panel,
+    save_panel,
+    signals_panel,
+    sliders_panel,
+)  # fmt: skip
+from pneumo_ros.workbench.data import answer_plots
+from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.desks import Desks
+from pneumo_ros.workbench.parts import Panels, revision
+from pneumo_ros.workbench.safety import Guard
+from pneumo_ros.workbench.uploads import accept_uploads
+
+TABS = {
+    "signals": ("Signals", signals_panel),
+    "failures": ("Where it fails", failures_panel),
+    "error": ("Error step by step", error_panel),
+    "diagnosis": ("Diagnosis", diagnosis_panel),
+    "sliders": ("Sliders", sliders_panel),
+    "live": ("Live", live_panel),
+    "save": ("Save", save_panel),
+}
+_PLOTLY = "/report/plotly.min.js"
+_REPORT = {"page.css": "text/css", "series.js": "text/javascript", "plots.js": "text/javascript"}
+
+
+def make_app(desks: Desks, guard: Guard) -> Dash:
+    """The application over `desks`, which answers only to whom `guard` lets in."""
+    server = Flask("pneumo_ros.workbench")
+    app = Dash(
+        "pneumo_ros.workbench", server=server, title="pneumo workbench", update_title=None,
+        assets_folder=str(Path(__file__).parent / "assets"), suppress_callback_exceptions=True, enable_mcp=False,
+        external_scripts=[{"src": _PLOTLY, "defer": "defer"}, "/report/series.js", "/report/plots.js"],
+        external_stylesheets=["/report/page.css"],
+        meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"},
+                   {"name": "color-scheme", "content": "light dark"}],
+    )  # fmt: skip
+    app.layout = _layout()
+    panels = Panels(app, desks)
+    for module in (recordings_panel, machine_panel, job_panel, *(module for _, module in TABS.values())):
+        module.register(panels)
+    panels.show([Output("machine", "children")], [revision()], _machine)
+    app.clientside_callback(ClientsideFunction("bench", "tab"), Output("tab-shown", "data"), Input("tab", "value"))
+    server.add_url_rule("/report/<name>", "report", _report_file)
+    accept_uploads(server, desks.uploads)
+    answer_plots(server, desks)
+    save_panel.serve_files(server, desks)
+    guard.protect(server, lambda: f"/b/{desks.new()}", app.csp_hashes())
+    server.before_request(partial(_led_on, desks))
+    return app
+
+
+def _led_on(desks: Desks) -> AnyResponse | None:
+    """The address of a desk that is no more leads to a new one."""
+    if not request.path.startswith("/b/"):
+        return None
+    try:
+        desks.of(request.path)
+    except KeyError:
+        return redirect("/", 303)
+    return None
+
+
+def _layout() -> html.Div:
+    options = [{"label": words, "value": key} for key, (words, _) in TABS.items()]
+    tabs = html.Fieldset(
+        [html.Legend("View", className="hidden-words"), dcc.RadioItems(options, "signals", id="tab", className="tabs")]
+    )
+    head = html.Header(
+        [html.H1(["pneumo workbench: ", html.Span(id="machine")]), html.P("", id="verdict", className="verdict")]
+    )
+    side = html.Aside([recordings_panel.layout(), machine_panel.layout()], className="side")
+    main = html.Main([job_panel.layout(), tabs, *(module.layout() for _, module in TABS.values())])
+    return html.Div(
+        [dcc.Location(id="url", refresh=False), dcc.Store(id="tab-shown"), head,
+         html.Div([side, main], className="columns")],
+        id="bench",
+    )  # fmt: skip
+
+
+def _machine(desk: Desk, _revision: int) -> list[str]:
+    return [f"{desk.variant.machine.rpartition('/')[2]} ({desk.variant.label})"]
+
+
+def _report_file(name: str) -> Response:
+    """What the page shares with reports."""
+    if _PLOTLY.endswith(f"/{name}"):
+        from plotly.offline import get_plotlyjs
+
+        return Response(get_plotlyjs(), mimetype="text/javascript", headers={"Cache-Control": "private, max-age=3600"})
+    if name not in _REPORT:
+        return Response("there is no such file", 404)
+    text = files("pneumo_ros.report").joinpath(f"assets/{name}").read_text(encoding="utf-8")
+    return Response(text, mimetype=_REPORT[name])

@@ -1,0 +1,88 @@
+"""Recordings on a desk: what they are called, whether they are fitted or held out, and what is cut from them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Literal
+
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.records import Recording, read_recording
+from pneumo_ros.records.corrections import corrected, parse_words
+from pneumo_ros.records.folders import recordings_in
+
+Role = Literal["fit", "hold", "out"]
+ROLES: dict[Role, str] = {"fit": "fit", "hold": "hold out", "out": "leave out"}
+_HELD = "hold"  # recordings of such names are meant to be held out
+_KEPT = 32  # recordings in memory: 10 minutes at 1 kHz take 40 MB
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How recordings are read: the options --namespace, --joint and --read-as of the verbs."""
+
+    namespace: str | None = None
+    joint: str | None = None
+    read_as: str = ""
+
+    def options(self) -> list[str]:
+        """As words of a command line."""
+        given = {"--namespace": self.namespace, "--joint": self.joint, "--read-as": self.read_as}
+        return [word for key, value in given.items() if value for word in (key, value)]
+
+
+@dataclass(frozen=True)
+class Bag:
+    """One recording: its path as verbs get it, its part in a fit, and the seconds cut from it."""
+
+    name: str
+    path: str
+    role: Role
+    cuts: tuple[tuple[float, float], ...] = ()
+    problem: str = ""  # why it cannot be used; empty when it can
+
+    def cut_options(self) -> list[str]:
+        """As words of a command line."""
+        return [word for begin, end in self.cuts for word in ("--cut", f"{self.path}:{begin:g}-{end:g}")]
+
+
+def found_bags(paths: Iterable[str | Path], folder: Path | None = None) -> list[Bag]:
+    """A bag for every recording named, or in a folder named; paths below `folder` are told from there."""
+    found: dict[Path, Bag] = {}
+    for given in paths:
+        for path in recordings_in(Path(given)) or [Path(given)]:
+            whole = path.resolve()
+            told = whole.relative_to(folder) if folder and whole.is_relative_to(folder) else whole
+            name = whole.stem if whole.suffix in (".mcap", ".db3") else whole.name
+            found.setdefault(whole, Bag(name, str(told), "hold" if name.startswith(_HELD) else "fit"))
+    return _told_apart(list(found.values()))
+
+
+def _told_apart(bags: list[Bag]) -> list[Bag]:
+    """Bags of one name are called by their folder, too."""
+    names = [bag.name for bag in bags]
+    return [Bag(f"{Path(b.path).parent.name}/{b.name}", b.path, b.role) if names.count(b.name) > 1 else b for b in bags]
+
+
+def read(path: Path, reading: Reading, atmosphere: float) -> Recording:
+    """The recording at `path`, kept in memory until its file changes; `atmosphere` [Pa] is added to gauge pressures.
+
+    Raises DataError when it cannot be read, UsageError for wrong words of `reading`.
+    """
+    newest = max((inner.stat().st_mtime_ns for inner in [path, *path.glob("*")]), default=0) if path.exists() else 0
+    return _read(path, newest, reading, atmosphere)
+
+
+@lru_cache(_KEPT)
+def _read(path: Path, newest: int, reading: Reading, atmosphere: float) -> Recording:
+    words = parse_words(reading.read_as)
+    return corrected(read_recording(path, reading.namespace, reading.joint), words, atmosphere)
+
+
+def problem_of(path: Path, reading: Reading, atmosphere: float) -> str:
+    """Why a recording cannot be read; empty when it can."""
+    try:
+        read(path, reading, atmosphere)
+    except PneumoError as error:
+        return str(error)
+    return ""

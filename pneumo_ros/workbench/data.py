@@ -1,0 +1,85 @@
+"""What the page's script asks for by itself: charts while somebody zooms or slides, the job, the live axis. As JSON."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from flask import Flask, Response, jsonify, request
+
+from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.desks import Desks
+from pneumo_ros.workbench.job_panel import status_of
+from pneumo_ros.workbench.live_panel import live_of
+from pneumo_ros.workbench.response_chart import response_chart
+from pneumo_ros.workbench.signals import View, readings, signals_chart
+from pneumo_ros.workbench.thin import Span
+from pneumo_ros.workbench.variant import Variant
+
+_LONGEST = 100_000  # bytes of a question
+
+
+def answer_plots(server: Flask, desks: Desks) -> None:
+    """POST /signals/DESK and its like take a JSON object and return one; 400 tells what is wrong."""
+
+    def answering(make: Callable[[Desk, Mapping[str, Any]], Any]) -> Callable[[str], Response]:
+        def answer(desk: str) -> Response:
+            asked = request.get_json(silent=True) if (request.content_length or 0) < _LONGEST else None
+            if not isinstance(asked, dict):
+                return Response("a JSON object is wanted", 400)
+            try:
+                return jsonify(make(desks.of(f"/b/{desk}"), asked))
+            except KeyError:
+                return Response("there is no such desk; open the page again", 404)
+            except (PneumoError, TypeError, ValueError) as problem:
+                return Response(str(problem), 400)
+
+        return answer
+
+    answers = {"signals": signals_of, "response": response_chart, "status": status_of, "live": live_of}
+    for name, make in answers.items():
+        server.add_url_rule(f"/{name}/<desk>", name, answering(make), methods=["POST"])
+
+
+def signals_of(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The chart of a run, None without recordings. Asked are run, span, shown, regime, other and marks."""
+    bag = desk.shelf.bag(asked.get("run"))
+    if bag is None:
+        return None
+    return signals_chart(bag, desk.shelf.recording(bag), view_of(asked), variants_of(desk, asked.get("other")))
+
+
+def cursors_of(desk: Desk, asked: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of the cursors; see `signals.readings`."""
+    bag = desk.shelf.bag(asked.get("run"))
+    if bag is None or not asked.get("marks"):
+        return []
+    return readings(bag, desk.shelf.recording(bag), view_of(asked), variants_of(desk, asked.get("other")))
+
+
+def view_of(asked: Mapping[str, Any]) -> View:
+    """What is asked to be shown; ValueError for numbers that are none."""
+    marks = {str(name): number(x) for name, x in (asked.get("marks") or {}).items()}
+    return View([str(name) for name in asked.get("shown") or ()], span_of(asked), str(asked.get("regime") or ""), marks)
+
+
+def span_of(asked: Mapping[str, Any]) -> Span | None:
+    """The seconds in view; ValueError where they are none."""
+    span = asked.get("span")
+    return (number(span[0]), number(span[1])) if span else None
+
+
+def number(value: Any) -> float:
+    """A finite number; UsageError for anything else."""
+    found = float(value)
+    if not math.isfinite(found):
+        raise UsageError("a number that is not finite was asked for")
+    return found
+
+
+def variants_of(desk: Desk, other: Any) -> dict[str, Variant]:
+    """The machine at hand and the one beside it, by the role of their colour."""
+    found = {"model": desk.variant}
+    if isinstance(other, int) and other != desk.current and 0 <= other < len(desk.variants):
+        found["second"] = desk.variants[other]
+    return found

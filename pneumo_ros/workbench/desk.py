@@ -1,0 +1,187 @@
+"""A desk: what one tab of the browser works on. It outlives a reload of the page, and no other tab touches it."""
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.plant import Model, save_model
+from pneumo_ros.workbench.bags import Reading
+from pneumo_ros.workbench.job import Job
+from pneumo_ros.workbench.live import Live
+from pneumo_ros.workbench.plans import Bench, Plan, campaign_plan, compare_plan, diagnose_plan, refit_plan
+from pneumo_ros.workbench.shelf import Shelf
+from pneumo_ros.workbench.variant import Compared, Variant, model_of
+
+_ATMOSPHERE = 101325.0  # Pa, for machines that do not say
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the command line gave: recordings, how to read them, the machine file, files of effects."""
+
+    bags: tuple[str, ...] = ()
+    reading: Reading = field(default_factory=Reading)
+    machine: str = "axis"
+    effects: tuple[str, ...] = ()
+
+
+class Desk:
+    """Recordings, variants of the machine, effects ticked, and the job at hand, in a folder of its own."""
+
+    def __init__(self, folder: Path, given: Given) -> None:
+        self.folder, self.given = folder, given
+        self.lock = threading.RLock()
+        path = Path(given.machine)
+        machine = str(path.resolve()) if path.is_file() else given.machine
+        self.variants = [Variant(0, machine, "as given")]
+        self.current, self.revision, self.message = 0, 0, ""
+        self.chosen = 0  # counts how often another variant was taken up
+        self.ticked: frozenset[str] = frozenset(self.model().effects)
+        self.job: Job | None = None
+        self.live: Live | None = None
+        self._jobs = 0
+        atmosphere = self.model().parameters.get("air.atmospheric_pressure", _ATMOSPHERE)
+        self.shelf = Shelf(folder, given.reading, atmosphere, self.changed)
+        self.opened: tuple[int, str] = (0, "")  # which job showed its result last, and on which tab
+        self.shelf.take(given.bags)
+
+    # --- machines ---------------------------------------------------------------------------------------------------
+
+    @property
+    def variant(self) -> Variant:
+        """The machine at hand."""
+        return self.variants[self.current]
+
+    def model(self, number: int | None = None) -> Model:
+        """The model of a variant, by default of the one at hand."""
+        chosen = self.variant if number is None else self.variants[number]
+        return model_of(chosen.machine, self.folder, self.given.effects)
+
+    def lineage(self, number: int | None = None) -> list[Variant]:
+        """From the machine as given to a variant."""
+        chosen: Variant | None = self.variant if number is None else self.variants[number]
+        found: list[Variant] = []
+        while chosen is not None:
+            found.insert(0, chosen)
+            chosen = None if chosen.parent is None else self.variants[chosen.parent]
+        return found
+
+    def choose(self, number: int) -> None:
+        """Take a variant up again."""
+        with self.lock:
+            self.current, self.chosen = number, self.chosen + 1
+            self.ticked = frozenset(self.model().effects)
+            self.changed()
+
+    def undo(self) -> None:
+        """Back to what the machine at hand was made from."""
+        if self.variant.parent is not None:
+            self.choose(self.variant.parent)
+
+    def by_hand(self, values: Mapping[str, float]) -> None:
+        """A variant with other values; UsageError for one that is out of range."""
+        said = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
+        self._edited(self.model().with_parameters(values), "by hand", f"# set by hand: {said}")
+
+    def _edited(self, model: Model, label: str, comment: str) -> None:
+        with self.lock:
+            number, before = len(self.variants), self.variant
+            name = self._machine_name(number)
+            save_model(model, self.folder / name, overwrite=True)
+            line = f"{comment}; from {before.machine}, saved as {name}"
+            self.variants.append(Variant(number, name, label, before.number, (line,)))
+            self.choose(number)
+
+    def _machine_name(self, number: int) -> str:
+        return f"{Path(self.given.machine).stem}_{number}.yaml"
+
+    # --- work -------------------------------------------------------------------------------------------------------
+
+    def compare(self) -> None:
+        """Start comparing the machine at hand; UsageError when there is nothing to compare with."""
+        self._start(lambda number: compare_plan(self._bench(), number))
+
+    def refit(self) -> None:
+        """Start refitting with the effects that are ticked; UsageError when there is nothing to fit."""
+        model = self.model()
+        kept = [name for name in model.effects if name in self.ticked]
+        new = sorted(self.ticked - {*model.effects})
+        if not self._bench().paths("fit"):
+            raise UsageError("no recording is marked 'fit'; mark one, then press Refit again")
+        if len(kept) < len(model.effects):
+            gone, ticked = [name for name in model.effects if name not in kept], self.ticked
+            self._edited(model.with_effects(kept), f"- {', '.join(gone)}", f"# effects without {', '.join(gone)}")
+            self.ticked = ticked
+        self._start(lambda number: refit_plan(self._bench(), new, self._machine_name(len(self.variants)), number))
+
+    def diagnose(self) -> None:
+        """Start looking for what is missing; UsageError without recordings to fit and to judge by."""
+        self._start(lambda number: diagnose_plan(self._bench(), self._machine_name(len(self.variants)), number))
+
+    def cancel(self) -> None:
+        """End the job at hand."""
+        if self.job is not None:
+            self.job.cancel()
+
+    def campaign(self, namespace: str) -> None:
+        """Start driving a live plant with constant voltages; what is recorded is laid on the desk."""
+        self._start(lambda number: campaign_plan(self._bench(), namespace, f"campaign_{number}"))
+
+    def close(self) -> None:
+        """End what runs and wait for it."""
+        self.cancel()
+        if self.live is not None:
+            self.live.close()
+        if self.job is not None:
+            self.job.wait(10.0)
+
+    def _bench(self) -> Bench:
+        effects = tuple(str(Path(path).resolve()) for path in self.given.effects)
+        return Bench(self.shelf.bags, self.given.reading, self.variant.machine, effects)
+
+    def _start(self, make: Callable[[int], Plan]) -> None:
+        with self.lock:
+            if self.job is not None and self.job.running:
+                raise UsageError(f"{self.job.title} goes on; cancel it first")
+            self._jobs += 1
+            plan, before = make(self._jobs), self.variant
+            self.job = Job(plan.title, plan.lines, self.folder, lambda: self._done(plan, before))
+            self.changed()
+
+    def _done(self, plan: Plan, before: Variant) -> None:
+        """Keep what the verbs of a plan wrote."""
+        if plan.recordings:
+            self.shelf.take([self.folder / plan.recordings])
+            return
+        stem = self.folder / plan.compared
+        compared = Compared(plan.bags, *(stem.with_suffix(kind) for kind in (".json", ".npz", ".html")))
+        with self.lock:
+            if not plan.machine:
+                self.variants[before.number] = replace(self.variants[before.number], compared=compared)
+                self.opened = (self._jobs, "failures")
+            else:
+                made, number = self.folder / plan.made, len(self.variants)
+                files = made.with_suffix(".json"), made.with_suffix(".html")
+                self.variants.append(
+                    Variant(number, plan.machine, plan.label, before.number, plan.shown(), *files, compared)
+                )
+                self.opened = (self._jobs, "diagnosis" if plan.title == "Diagnosing" else "error")
+                self.choose(number)
+            self.changed()
+
+    def say(self, problem: PneumoError | str) -> None:
+        """A sentence for the page; the next change takes it away."""
+        with self.lock:
+            self.changed()
+            self.message = str(problem)
+
+    def changed(self) -> None:
+        """The page has something new to show."""
+        self.revision, self.message = self.revision + 1, ""
+
+
+def commands(lineage: Sequence[Variant]) -> str:
+    """The command lines that make the last variant from the first, one below the other."""
+    return "\n".join(line for variant in lineage for line in variant.lines)

@@ -1,0 +1,169 @@
+"""The live tab: what a running axis does, its parameters, a record button and the constant-voltage campaign."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from dash import ClientsideFunction, Input, Output, State, dcc, html
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.report.markup import Html, tag
+from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.live import KEPT, Live
+from pneumo_ros.workbench.parts import Panels, asked, button, revision
+from pneumo_ros.workbench.thin import packed
+
+# panel -> its series: name, colour, factor
+_PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
+    "position [mm]": (("position", "model", 1e3), ("setpoint", "second", 1e3), ("reference", "third", 1e3)),
+    "velocity [m/s]": (("velocity", "model", 1.0),),
+    "pressure [kPa]": (("pressure_a", "model", 1e-3), ("pressure_b", "second", 1e-3)),
+    "voltage [V]": (("voltage", "third", 1.0),),
+}
+_RESTS = 1e-3  # m/s: slower counts as rest
+
+
+def layout() -> html.Div:
+    """Controls, plot and status."""
+    place = html.Label(["Namespace ", dcc.Input(id="namespace", value="", type="text", size="14")])
+    setting = [
+        html.Label(["Node ", dcc.Input(id="set-node", value="simulator", type="text", size="12")]),
+        html.Label(["Parameter ", dcc.Input(id="set-name", value="lugre_friction.coulomb_friction", type="text")]),
+        html.Label(["Value ", dcc.Input(id="set-value", value="", type="text", size="8")]),
+        button("Set", "set"),
+        html.Span("", id="set-says", role="status"),
+    ]
+    return html.Div(
+        [
+            html.P("A simulator or a rig that runs on this machine's ROS domain.", className="soft"),
+            html.Div([place, button("Watch", "watch", main=True), button("Record", "record"),
+                      button("Constant-voltage campaign", "campaign")], className="row"),
+            html.Div(setting, className="row"),
+            html.P("", id="live-says", role="status"),
+            html.Div(id="live-plot", role="img", **{"aria-label": "The axis over the last 20 s"}),
+            html.Div(id="live-status"),
+            dcc.Store(id="live-on"), dcc.Store(id="live-shown"),
+        ],
+        id="panel-live", className="card panel", hidden=True,
+    )  # fmt: skip
+
+
+def register(panels: Panels) -> None:
+    """Callbacks of this panel."""
+    panels.act([Input("watch", "n_clicks"), State("namespace", "value")], _watch)
+    panels.act([Input("record", "n_clicks")], _record)
+    panels.act([Input("campaign", "n_clicks"), State("namespace", "value")], _campaign)
+    panels.act([Input("set", "n_clicks"), State("set-node", "value"), State("set-name", "value"),
+                State("set-value", "value")], _set)  # fmt: skip
+    panels.show([Output("watch", "children"), Output("record", "children"), Output("record", "disabled"),
+                 Output("live-on", "data")], [revision()], _buttons)  # fmt: skip
+    panels.app.clientside_callback(
+        ClientsideFunction("bench", "live"), Output("live-shown", "data"), Input("live-on", "data"),
+        Input("tab", "value"),
+    )  # fmt: skip
+
+
+def _watch(desk: Desk, clicks: int | None, namespace: str | None) -> None:
+    if not asked(clicks):
+        return
+    if desk.live is None:
+        desk.live = Live((namespace or "").strip().strip("/"), desk.folder)
+    else:
+        _taken(desk)
+        desk.live.close()
+        desk.live = None
+    desk.changed()
+
+
+def _taken(desk: Desk) -> None:
+    """End a recording and lay it on the desk."""
+    path = desk.live.stop_recording() if desk.live else None
+    if path is not None:
+        desk.shelf.take([path])
+
+
+def _record(desk: Desk, clicks: int | None) -> None:
+    if not asked(clicks):
+        return
+    if desk.live is None:
+        raise UsageError("press Watch first: it says which axis is meant")
+    if desk.live.recording is None:
+        desk.live.record()
+    else:
+        _taken(desk)
+    desk.changed()
+
+
+def _campaign(desk: Desk, clicks: int | None, namespace: str | None) -> None:
+    if asked(clicks):
+        desk.campaign((namespace or "").strip().strip("/"))
+
+
+def _set(desk: Desk, clicks: int | None, node: str, name: str, value: str) -> None:
+    if not asked(clicks):
+        return
+    if desk.live is None:
+        raise UsageError("press Watch first")
+    try:
+        number = float(value)
+    except ValueError as problem:
+        raise UsageError(f"'{value[:40]}' is no value for {name}; give a number") from problem
+    desk.live.set(node or "", name or "", number)
+
+
+def _buttons(desk: Desk, _revision: int) -> tuple[str, str, bool, bool]:
+    live = desk.live
+    recording = live is not None and live.recording is not None
+    watch, record = "Stop watching" if live else "Watch", "Stop recording" if recording else "Record"
+    return watch, record, live is None, live is not None
+
+
+def live_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
+    """What the page's script shows of the axis: chart, sentence, what nodes say, and the answer to a setting."""
+    live = desk.live
+    if live is None:
+        return {"chart": None, "says": "", "status": "", "answer": ""}
+    curves = live.curves()
+    says = state(curves) if curves else "Nothing is heard yet: does an axis run in this namespace?"
+    return {"chart": live_chart(curves) if curves else None, "says": says, "status": _status(live),
+            "answer": live.answer}  # fmt: skip
+
+
+def state(curves: dict[str, tuple[list[float], list[float]]]) -> str:
+    """What the piston does, in a word: by its velocity, else by how far it got in half a second."""
+    if "velocity" in curves:
+        speed = abs(curves["velocity"][1][-1])
+    else:
+        times, values = (np.array(column) for column in curves.get("position", ([0.0], [0.0])))
+        late = times > times[-1] - 0.5
+        speed = float(np.ptp(values[late])) / 0.5
+    return f"The piston {'sticks' if speed < _RESTS else 'slides'}, {speed:.4f} m/s."
+
+
+def live_chart(curves: dict[str, tuple[list[float], list[float]]]) -> dict[str, Any]:
+    """The last seconds for the page's script."""
+    last = max(times[-1] for times, _ in curves.values())
+    panels = []
+    for title, own in _PANELS.items():
+        traces = [_trace(name, role, factor, curves[name]) for name, role, factor in own if name in curves]
+        panels += [{"title": title, "share": 1, "ticks": [], "traces": traces}] if traces else []
+    return {"title": "live", "x": "time [s]", "link": "live", "span": [last - KEPT, last], "logX": False,
+            "legend": True, "panels": panels, "height": 90 + 125 * len(panels)}  # fmt: skip
+
+
+def _trace(name: str, role: str, factor: float, curve: tuple[list[float], list[float]]) -> dict[str, Any]:
+    times, values = (np.array(column, dtype=float) for column in curve)
+    kind = "steps" if name == "voltage" else "line"
+    return {"name": name.replace("_", " "), "role": role, "kind": kind, "hidden": False, "x": packed(times),
+            "y": packed(factor * values)}  # fmt: skip
+
+
+def _status(live: Live) -> Html:
+    """What every node says of itself."""
+    signs = ("good", "warning", "bad")
+    rows = []
+    for name, one in sorted(live.status.items()):
+        values = ", ".join(f"{key} {value}" for key, value in one["values"].items())
+        more = tag("ul", tag("li", values)) if values else ""
+        rows.append(tag("li", tag("b", f"{name}: {one['message']}"), more, class_=signs[min(one["level"], 2)]))
+    return Html(tag("h2", "Diagnostics") + tag("ul", rows, class_="findings")) if rows else Html()

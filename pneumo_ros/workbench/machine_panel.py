@@ -1,0 +1,132 @@
+"""The machine: its variants, what to do with it, and its effects as check boxes."""
+
+from functools import partial
+from itertools import groupby
+from typing import Any
+
+from dash import ALL, Input, Output, State, dcc, html
+from dash.exceptions import PreventUpdate
+
+from pneumo_ros.diagnose.wording import number
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.catalogue import body, catalogue, room, summary
+from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.library import FRAME
+from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.parts import Panels, asked, button, choice, revision
+
+ACTIONS = {
+    "compare": ("Compare", "the machine with all recordings: where does it fail?"),
+    "refit": ("Refit", "with the effects that are ticked, to the recordings to fit"),
+    "diagnose": ("Diagnose", "look for what is missing, add it and refit"),
+    "undo": ("Undo", "back to the machine that this one was made from"),
+}
+
+
+def layout() -> html.Section:
+    """Buttons, variants and effects."""
+    buttons = [button(name, key, main=key == "refit", title=words) for key, (name, words) in ACTIONS.items()]
+    return html.Section(
+        [
+            html.H2("Machine", id="machine-title"),
+            html.Div(buttons, className="actions"),
+            html.P("", id="message", className="message", role="alert", hidden=True),
+            html.Div(id="variants"),
+            html.H3("Effects"),
+            dcc.Store(id="effects-of"),
+            html.Div(id="effects", className="effects", role="group", **{"aria-label": "Effects of the machine"}),
+        ],
+        className="card",
+        **{"aria-labelledby": "machine-title"},
+    )
+
+
+def register(panels: Panels) -> None:
+    """Callbacks of this panel."""
+    panels.show([Output("variants", "children")], [revision()], _variants)
+    panels.show([Output("effects", "children"), Output("effects-of", "data")],
+                [revision(), State("effects-of", "data")], render)  # fmt: skip
+    panels.show([Output("message", "children"), Output("message", "hidden")], [revision()], _message)
+    panels.show([Output(key, "disabled") for key in ACTIONS], [revision()], _disabled)
+    for key in ACTIONS:
+        panels.act([Input(key, "n_clicks")], partial(_press, key))
+    panels.act([Input({"type": "variant", "index": ALL}, "value")], _choose)
+    panels.act([Input({"type": "effect", "name": ALL}, "value")], _tick)
+
+
+def _variants(desk: Desk, _revision: int) -> list[Any]:
+    options = [{"label": f"{v.number}: {v.label}", "value": v.number} for v in desk.variants]
+    radio = dcc.RadioItems(options, desk.current, id={"type": "variant", "index": 0})
+    return [choice("Variants", radio) if len(options) > 1 else None]
+
+
+def render(desk: Desk, _revision: int, shown: int | None) -> tuple[Any, int]:
+    """The effects room by room; drawn anew for another variant only, so that no tick is lost."""
+    if shown == desk.chosen:
+        raise PreventUpdate
+    model = desk.model()
+    effects = [effect for effect in catalogue(model).values() if effect.name not in FRAME]
+    rooms = [
+        html.Div([html.H3(name.capitalize()), *(_effect(desk, model, one) for one in inner)])
+        for name, inner in groupby(effects, key=room)
+    ]
+    return rooms, desk.chosen
+
+
+def _effect(desk: Desk, model: Model, effect: type[Effect]) -> html.Div:
+    name, ticked = effect.name, effect.name in desk.ticked
+    words = name.replace("_", " ")
+    box = dcc.Checklist(
+        [{"label": words, "value": name}], [name] if ticked else [], id={"type": "effect", "name": name}
+    )
+    more = [
+        html.P(summary(effect)),
+        *(html.Pre(html.Code(body(effect, inner))) for inner in ("equations", "advance") if inner in effect.functions),
+        _parameters(model, effect),
+        html.P(f"Source: {effect.source}", className="soft") if effect.source else None,
+    ]
+    inner = html.Details(
+        [html.Summary(["Equation", html.Span(f" and parameters of {words}", className="hidden-words")]), *more]
+    )
+    sign = html.P(effect.signature, className="sign") if effect.signature else None
+    return html.Div([box, sign, inner], className=f"effect{' extra' * (name not in model.effects)}")
+
+
+def _parameters(model: Model, effect: type[Effect]) -> Any:
+    if not effect.parameters:
+        return html.P("No parameter.")
+    rows = [
+        html.Tr([
+            html.Th(name.replace("_", " "), scope="row", title=one.meaning),
+            html.Td(number(model.parameters.get(f"{effect.name}.{name}", one.default), 4), className="number"),
+            html.Td(one.unit), html.Td(one.range_text()),
+        ])
+        for name, one in effect.parameters.items()
+    ]  # fmt: skip
+    head = html.Thead(html.Tr([html.Th(word, scope="col") for word in ("parameter", "value", "unit", "allowed")]))
+    return html.Div(html.Table([head, html.Tbody(rows)]), className="wide")
+
+
+def _press(key: str, desk: Desk, clicks: int | None) -> None:
+    if asked(clicks):
+        getattr(desk, key)()
+
+
+def _message(desk: Desk, _revision: int) -> tuple[str, bool]:
+    return desk.message, not desk.message
+
+
+def _disabled(desk: Desk, _revision: int) -> list[bool]:
+    busy = desk.job is not None and desk.job.running
+    return [busy, busy, busy, busy or desk.variant.parent is None]
+
+
+def _choose(desk: Desk, values: list[int | None]) -> None:
+    if values and values[0] is not None and values[0] != desk.current:
+        desk.choose(values[0])
+
+
+def _tick(desk: Desk, values: list[list[str]]) -> None:
+    ticked = frozenset(name for one in values for name in one)
+    if values:
+        desk.ticked = ticked

@@ -1,0 +1,108 @@
+"""What a button does, as the verbs that do it: the very command lines that a user could type."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pneumo_ros.errors import UsageError
+from pneumo_ros.workbench.bags import Bag, Reading
+from pneumo_ros.workbench.job import Line
+
+_EFFECT_LINE, _COMPARE_LINE, _DIAGNOSE_LINE = 6.0, 1.0, 12.0  # shares of a job's time
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What every verb is told: the recordings, how to read them, the machine file and files of effects."""
+
+    bags: tuple[Bag, ...]
+    reading: Reading
+    machine: str
+    effects: tuple[str, ...]
+
+    def paths(self, *roles: str) -> list[str]:
+        """Paths of the usable recordings in these roles."""
+        return [bag.path for bag in self.bags if bag.role in roles and not bag.problem]
+
+    def used(self) -> list[Bag]:
+        """The recordings that are fitted or held out."""
+        return [bag for bag in self.bags if bag.role != "out" and not bag.problem]
+
+    def options(self, machine: str) -> list[str]:
+        """--model, --effects, and how to read and cut."""
+        effects = [word for path in self.effects for word in ("--effects", path)]
+        cuts = [word for bag in self.used() for word in bag.cut_options()]
+        return ["--model", machine, *effects, *self.reading.options(), *cuts]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Verbs to run, and the names of the files they write; `machine` is empty when they make none."""
+
+    title: str
+    label: str
+    lines: tuple[Line, ...]
+    bags: tuple[str, ...]  # that are compared, in this order
+    compared: str  # stem of the comparison's files
+    machine: str = ""
+    recordings: str = ""  # folder of what is recorded
+    made: str = ""  # stem of JSON and report of the verb that makes the machine
+
+    def shown(self) -> tuple[str, ...]:
+        """The command lines, to be typed."""
+        return tuple(shlex.join(["pneumo", *line.arguments]) for line in self.lines)
+
+
+def compare_plan(bench: Bench, number: int) -> Plan:
+    """Compare the machine with all recordings in use; UsageError when there are none."""
+    line, bags = _compare(bench, bench.machine, number)
+    return Plan("Comparing", "", (line,), bags, f"compared_{number}")
+
+
+def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) -> Plan:
+    """Add `effects` and refit, or refit alone where there are none; write `machine`, and compare it."""
+    fit, held, made = bench.paths("fit"), bench.paths("hold"), f"made_{number}"
+    if not fit:
+        raise UsageError("no recording is marked 'fit'; mark one, then press Refit again")
+    files = ["--out", machine, "--json", f"{made}.json"]
+    if effects:
+        holdout = ["--holdout", *held] if held else []
+        words = ["add", *effects, *fit, *holdout, *bench.options(bench.machine), *files, "--report", f"{made}.html"]
+        label = f"+ {', '.join(effects)}"
+    else:
+        words = ["compare", *(held or fit), "--fit", *fit, *bench.options(bench.machine), *files]
+        words += ["--report", f"{made}.html"]
+        label = "refitted"
+    line, bags = _compare(bench, machine, number)
+    lines = (Line(tuple(words), _EFFECT_LINE), line)
+    return Plan("Refitting", label, lines, bags, f"compared_{number}", machine=machine, made=made)
+
+
+def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
+    """Search for what is missing, write `machine`, and compare it; UsageError without recordings in both roles."""
+    fit, held, made = bench.paths("fit"), bench.paths("hold"), f"made_{number}"
+    if not fit or not held:
+        lacking = "fit" if not fit else "hold out"
+        raise UsageError(f"a diagnosis needs recordings to fit and others to judge by; mark one '{lacking}'")
+    words = ["diagnose", *fit, "--holdout", *held, *bench.options(bench.machine), "--out", machine]
+    words += ["--json", f"{made}.json", "--report", f"{made}.html"]
+    line, bags = _compare(bench, machine, number)
+    lines = (Line(tuple(words), _DIAGNOSE_LINE), line)
+    return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine=machine, made=made)
+
+
+def campaign_plan(bench: Bench, namespace: str, folder: str) -> Plan:
+    """Drive a live plant with constant voltages, and record each run into `folder`."""
+    effects = [word for path in bench.effects for word in ("--effects", path)]
+    place = ["--namespace", namespace] if namespace else []
+    words = ["experiment", "constant-voltage", *place, "--out", folder, "--model", bench.machine, *effects]
+    return Plan("Constant voltages", "", (Line(tuple(words)),), (), "", recordings=folder)
+
+
+def _compare(bench: Bench, machine: str, number: int) -> tuple[Line, tuple[str, ...]]:
+    used, stem = bench.used(), f"compared_{number}"
+    if not used:
+        raise UsageError("there is no recording to compare with; drop one on the page")
+    words = ["compare", *(bag.path for bag in used), *bench.options(machine)]
+    words += ["--json", f"{stem}.json", "--series", f"{stem}.npz", "--report", f"{stem}.html"]
+    return Line(tuple(words), _COMPARE_LINE), tuple(bag.name for bag in used)

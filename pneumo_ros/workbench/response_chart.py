@@ -1,0 +1,71 @@
+"""The chart behind the sliders: measured, the machine at hand, and the same machine with the sliders' values."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+from pneumo_ros.diagnose.wording import SIGNALS, number
+from pneumo_ros.plant import Model
+from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.thin import Span, in_view, packed
+
+_ROOM = 600  # pixels
+_TITLES = {"measured": "measured", "second": "machine at hand", "model": "with the sliders"}
+
+
+def values_of(model: Model, stops: Mapping[str, Any]) -> dict[str, float]:
+    """Values of the parameters whose sliders were moved, from the stops of the sliders."""
+    from pneumo_ros.workbench.response import slid
+
+    own = {name: int(stop) for name, stop in stops.items() if name in model.parameters and int(stop)}
+    return {name: slid(model[name], stop, model.specification(name)) for name, stop in own.items()}
+
+
+def told(model: Model, name: str) -> str:
+    """A parameter as people read it: '80 N'."""
+    return f"{number(model[name], 4)} {model.specification(name).unit}".removesuffix(" 1")
+
+
+def response_chart(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The chart and `values`, parameter -> text; None without recordings. Asked are run, span, stops and names.
+
+    Raises NumericalError when the machine diverges, UsageError for a value out of range.
+    """
+    bag = desk.shelf.bag(asked.get("run"))
+    if bag is None:
+        return None
+    from pneumo_ros.workbench.response import respond
+
+    base = desk.model()
+    model = base.with_parameters(values_of(base, asked.get("stops") or {}))
+    span = asked.get("span") or (0.0, 1e9)
+    part, before = _begun(desk, desk.chosen, bag.name, (float(span[0]), float(span[1])))
+    after, panels = respond(model, part), []
+    inside = slice(part.first + 1, part.first + part.samples + 1)
+    for signal, values in after.items():
+        words, unit, factor = SIGNALS[signal]
+        curves = {"measured": part.run.signals[signal][inside], "second": before[signal], "model": values}
+        traces = [_trace(role, part.time, factor * curve) for role, curve in curves.items()]
+        panels.append({"title": f"{words} [{unit}]", "share": 1, "ticks": [], "traces": traces})
+    ends = [float(part.time[0]), float(part.time[-1])]
+    texts = {name: told(model, name) for name in asked.get("names") or () if name in model.parameters}
+    return {"title": bag.name, "x": "time [s]", "link": "response", "span": ends, "logX": False, "legend": True,
+            "panels": panels, "height": 90 + 150 * len(panels), "values": texts}  # fmt: skip
+
+
+def _trace(role: str, time: Any, values: Any) -> dict[str, Any]:
+    x, y = in_view(time, values, None, _ROOM)
+    return {"name": _TITLES[role], "role": role, "kind": "line", "hidden": False, "x": packed(x), "y": packed(y)}
+
+
+@lru_cache(8)
+def _begun(desk: Desk, _chosen: int, name: str, span: Span) -> Any:
+    """The stretch with its start, and the response of the machine at hand."""
+    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.workbench.response import respond, stretch
+
+    bag = desk.shelf.bag(name)
+    assert bag is not None
+    model = desk.model()
+    part = stretch(model, make_run(desk.shelf.recording(bag), model.force_driven), *span)
+    return part, respond(model, part)

@@ -1,0 +1,78 @@
+"""Recordings dropped on the page: file by file into the desk's folder, and nowhere else."""
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from flask import Flask, Response, request
+from werkzeug.exceptions import RequestEntityTooLarge
+
+from pneumo_ros.errors import UsageError
+
+LARGEST = 2 * 1024**3  # bytes of one file
+_MOST = 8 * 1024**3  # bytes of all files of a desk
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+ -]{0,120}")
+KINDS = (".mcap", ".db3", ".yaml")  # what recordings consist of
+_CHUNK = 1 << 20
+
+
+def place(folder: Path, given: str) -> Path:
+    """Where a file goes that the browser calls `given`: `folder/NAME` or `folder/RECORDING/NAME`.
+
+    UsageError for names that are not plain, for kinds that are no part of a recording, and for what would leave
+    `folder`.
+    """
+    parts = [part for part in given.replace("\\", "/").split("/") if part]
+    kept = parts[-2:]  # a recording is a folder of files; what is above it does not matter
+    if not kept or any(not _NAME.fullmatch(part) or part.endswith(".") for part in kept):
+        raise UsageError(f"'{given[:80]}' is no plain file name: letters, digits, and . _ + - are")
+    if Path(kept[-1]).suffix not in KINDS:
+        raise UsageError(f"{kept[-1]} is no part of a recording; these are: {', '.join(KINDS)}")
+    target = folder.joinpath(*kept).resolve()
+    if not target.is_relative_to(folder.resolve()):
+        raise UsageError(f"'{given[:80]}' lies outside the folder for recordings")
+    return target
+
+
+def accept_uploads(server: Flask, folder_of: Callable[[str], Path]) -> None:
+    """PUT /upload/DESK/PATH stores a file; KeyError of `folder_of` is a desk that is not there."""
+
+    def store(desk: str, name: str) -> Response:
+        try:
+            folder = folder_of(desk)
+            target = place(folder, name)
+            _check_room(folder, request.content_length)
+        except KeyError:
+            return Response("there is no such desk; open the page again", 404)
+        except UsageError as problem:
+            return Response(str(problem), 400)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _write(target)
+        return Response("", 204)
+
+    server.config["MAX_CONTENT_LENGTH"] = LARGEST
+    server.add_url_rule("/upload/<desk>/<path:name>", "upload", store, methods=["PUT"])
+
+
+def _check_room(folder: Path, length: int | None) -> None:
+    if length is None:
+        raise UsageError("the browser does not say how long the file is")
+    if length > LARGEST:
+        raise RequestEntityTooLarge
+    used = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    folder.mkdir(parents=True, exist_ok=True)
+    if used + length > _MOST or length > 0.9 * shutil.disk_usage(folder).free:
+        raise UsageError("there is no room for more recordings; open them by name: pneumo workbench BAG...")
+
+
+def _write(target: Path) -> None:
+    """The body of the request, in pieces: it may be larger than the memory."""
+    part = target.with_name(f".{target.name}.part")
+    try:
+        with part.open("wb") as stream:
+            while piece := request.stream.read(_CHUNK):
+                stream.write(piece)
+        part.replace(target)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,91 @@
+"""Variants of a machine: where each came from, what made it, and how it compares with the recordings."""
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model, load_model
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What `pneumo compare` wrote of some bags, by name, in the order given: its JSON, its series and its report."""
+
+    bags: tuple[str, ...]
+    json: Path
+    series: Path
+    report: Path
+
+    @property
+    def result(self) -> dict[str, Any]:
+        """The JSON."""
+        return _json(self.json)
+
+    def run(self, name: str) -> int | None:
+        """The number of a run in the series, counted from 1; None when it was not compared."""
+        return self.bags.index(name) + 1 if name in self.bags else None
+
+    def array(self, key: str) -> NDArray[Any]:
+        """One array of the series; KeyError when there is none of that name."""
+        return _array(self.series, key)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A machine file on a desk. `lines` are the command lines that make it from its parent; comments begin with #."""
+
+    number: int
+    machine: str  # what --model takes, seen from the desk's folder
+    label: str
+    parent: int | None = None
+    lines: tuple[str, ...] = ()
+    result: Path | None = None  # JSON of the verb that made it
+    report: Path | None = None
+    compared: Compared | None = None
+
+    def made_by(self) -> dict[str, Any]:
+        """The JSON of the verb that made it; empty where none did."""
+        return _json(self.result) if self.result else {}
+
+
+@lru_cache(64)
+def _json(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+@lru_cache(64)
+def _array(path: Path, key: str) -> NDArray[Any]:
+    with np.load(path) as series:
+        found: NDArray[Any] = series[key]
+    return found
+
+
+def model_of(machine: str, folder: Path, effects: Sequence[str]) -> Model:
+    """The model of a machine file seen from `folder`, or of a shipped one; UsageError as `load_model`."""
+    path = folder / machine
+    return load_model(str(path) if path.is_file() else machine, effects_files=tuple(effects))
+
+
+def typical_error(compared: Compared, bags: Sequence[str]) -> float | None:
+    """Error of a typical window over `bags` in noise floors, as `pneumo diagnose` tells it; None without them.
+
+    The geometric mean over all windows, and the root mean square over the signals.
+    """
+    runs = zip(compared.bags, compared.result["runs"], strict=True)
+    found = [run for name, run in runs if name in bags and run["windows"]]
+    if not found:
+        return None
+    total = sum(run["windows"] for run in found)
+    squares = []
+    for signal in found[0]["error"]:
+        logs = (run["windows"] * math.log(run["error"][signal]["typical_ratio_to_noise"]) for run in found)
+        squares.append(math.exp(sum(logs) / total) ** 2)
+    return math.sqrt(sum(squares) / len(squares))

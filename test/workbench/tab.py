@@ -1,0 +1,75 @@
+"""A tab of the browser on the workbench: what it shows, and all that it asked for and complained of."""
+
+from typing import Any
+from urllib.parse import urlsplit
+
+
+class Tab:
+    """A page that was opened; clicks are counted."""
+
+    def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
+        context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
+        self.page = context.new_page()
+        self.page.set_default_timeout(300_000)  # a busy machine is no failure
+        self.requests: list[str] = []
+        self.complaints: list[str] = []
+        self.clicks = 0
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("console", lambda message: self.complaints.append(f"{message.type}: {message.text}"))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.goto(address)
+        self.page.locator("#effects input").first.wait_for()
+
+    def close(self) -> None:
+        """Leave the page."""
+        self.page.context.close()
+
+    def strangers(self, port: int) -> list[str]:
+        """Requests that left the workbench."""
+        inside = (f"127.0.0.1:{port}", "")  # without a host: data and blob addresses
+        return [url for url in self.requests if urlsplit(url).netloc not in inside]
+
+    def press(self, name: str) -> None:
+        """Click a button."""
+        self.clicks += 1
+        self.page.get_by_role("button", name=name, exact=True).click()
+
+    def tick(self, effect: str) -> None:
+        """Tick an effect."""
+        self.clicks += 1
+        self.page.get_by_label(effect, exact=True).check()
+
+    def view(self, name: str) -> None:
+        """Choose a tab of the page."""
+        self.clicks += 1
+        self.page.locator("#tab").get_by_text(name, exact=True).click()
+
+    def see(self, selector: str, text: str = "") -> Any:
+        """Wait until an element that holds `text` is to be seen."""
+        found = self.page.locator(selector).filter(has_text=text).first
+        found.wait_for(state="visible")
+        return found
+
+    def traces(self) -> list[dict[str, Any]]:
+        """Name, x and y of what the plot of the run shows."""
+        pick = "one => one._fullData.map(t => ({name: t.name, x: [...t.x], y: [...t.y], yaxis: t.yaxis}))"
+        found: list[dict[str, Any]] = self.page.locator("#signals").evaluate(pick)
+        return found
+
+    def wait_for_traces(self, ready: Any) -> list[dict[str, Any]]:
+        """Until what the plot shows is `ready`."""
+        for _ in range(1200):
+            found = self.traces() if self.page.locator("#signals .main-svg").count() else []
+            if ready(found):
+                return found
+            self.page.wait_for_timeout(50)
+        raise AssertionError(f"the plot never was as expected; it shows {[one['name'] for one in found]}")
+
+    def drag(self, begin: float, end: float) -> None:
+        """Drag across the plot of the run, between two shares of its width."""
+        box = self.page.locator("#signals .nsewdrag").first.bounding_box()
+        height = box["y"] + 0.5 * box["height"]
+        self.page.mouse.move(box["x"] + begin * box["width"], height)
+        self.page.mouse.down()
+        self.page.mouse.move(box["x"] + end * box["width"], height, steps=8)
+        self.page.mouse.up()
