@@ -1,6 +1,7 @@
 # make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
 # make test   lint, types and tests, as continuous integration runs them
 # make bench  print the tables of benchmarks/
+# make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
@@ -35,7 +36,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench clean
+.PHONY: help demo test bench fuzz clean
 .DELETE_ON_ERROR:
 
 help:
@@ -61,6 +62,9 @@ test: $(READY) | .cache/tmp
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done
+
+fuzz: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/fuzz.py $(FUZZ)
 
 clean:
 	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info
