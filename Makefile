@@ -2,6 +2,7 @@
 # make test   lint, types and tests, as continuous integration runs them
 # make bench  print the tables of benchmarks/
 # make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
+# make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
@@ -36,7 +37,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench fuzz clean
+.PHONY: help demo test bench fuzz chaos clean
 .DELETE_ON_ERROR:
 
 help:
@@ -65,6 +66,9 @@ bench: $(READY) | .cache/tmp
 
 fuzz: $(READY) | .cache/tmp
 	$(BIN)/python benchmarks/fuzz.py $(FUZZ)
+
+chaos: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/chaos.py $(CHAOS)
 
 clean:
 	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info
