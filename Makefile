@@ -3,6 +3,7 @@
 # make bench  print the tables of benchmarks/
 # make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
 # make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
+# make endurance  24 h of simulated and 20 min of real time; ENDURANCE="--hours 1 --minutes 2" for less
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
@@ -37,7 +38,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench fuzz chaos clean
+.PHONY: help demo test bench fuzz chaos endurance clean
 .DELETE_ON_ERROR:
 
 help:
@@ -69,6 +70,9 @@ fuzz: $(READY) | .cache/tmp
 
 chaos: $(READY) | .cache/tmp
 	$(BIN)/python benchmarks/chaos.py $(CHAOS)
+
+endurance: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/endurance.py $(ENDURANCE)
 
 clean:
 	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info

@@ -22,6 +22,7 @@ ROS_WHEELS = [
 ]
 REPORT = ["plotly>=5"]  # the pages that --report writes
 FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
+DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 TEST = ["pytest>=7.4", "pytest-xdist>=3", "hypothesis>=6.80", "playwright", "xacro>=2.0"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
@@ -70,8 +71,9 @@ setup(
         "ros": ROS_WHEELS,
         "report": REPORT,
         "figures": FIGURES,
+        "dask": DASK,
         "test": TEST,
-        "dev": REPORT + FIGURES + TEST + DEV,
+        "dev": REPORT + FIGURES + DASK + TEST + DEV,
     },
     entry_points={
         "console_scripts": [

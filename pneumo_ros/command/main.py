@@ -23,6 +23,7 @@ VERBS = (
     "effects",
     "experiment",
     "tune",
+    "fleet",
 )  # in the order help lists them; each is a module beside this one
 
 EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong usage, 3 unreadable or unfit data,

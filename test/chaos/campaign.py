@@ -76,7 +76,7 @@ def campaign(
     names: Iterable[str] = (),
     told: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """At most `count` faults within about `seconds`, of those in `names` or all, each followed by a look at all that must hold.
+    """At most `count` faults, of those in `names` or all, in about `seconds`; after each, what must hold is checked.
 
     A field in which something broke is left, and a new one begins.
     """

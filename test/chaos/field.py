@@ -19,7 +19,7 @@ from pneumo_ros.records import read_topics
 PLACE = "chaos"
 MARK = "chaos"  # frame of messages that a fault sends: they are no state of the simulator
 RATE = 200.0  # Hz of the simulator
-ANSWER = 15.0  # s within which every node speaks again; the machine may be busy
+ANSWER = 30.0  # s within which every node speaks again; the machine may be busy
 OPTIONS: dict[str, dict[str, object]] = {
     "simulator": {"publish_rate": RATE},
     "controller": {"reference.shape": "sine", "reference.amplitude": 0.3, "reference.frequency": 0.2},
@@ -87,7 +87,11 @@ class Field:
             hold(process.process.poll() is None, f"{name} ended: {process.said[-500:]}")
         have = {topic: len(self.probe.heard[topic]) for topic in ("joint_states", "valve/command")}
         for topic, count in have.items():
-            self.until(lambda topic=topic, count=count: self.spoken(topic, count), f"{topic} fell silent")
+            owner = "simulator" if topic == "joint_states" else "controller"
+            self.until(
+                lambda topic=topic, count=count: self.spoken(topic, count),
+                lambda topic=topic, owner=owner: f"{topic} fell silent; {owner} said: {self.nodes[owner].said[-500:]}",
+            )
         for name in self.nodes:
             with suppress(AssertionError):
                 self.probe.health(f"{PLACE}/{name}")
@@ -116,11 +120,12 @@ class Field:
             del self.probe.heard[topic][:-1]
         del self.probe.heard["/diagnostics"][:-20], self.probe.heard["valve/command"][:-1]
 
-    def until(self, condition: Callable[[], object], words: str, seconds: float = ANSWER) -> None:
+    def until(self, condition: Callable[[], object], words: str | Callable[[], str], seconds: float = ANSWER) -> None:
         """Until `condition` holds; BrokenError with `words` when it does not in time."""
         end = time.monotonic() + seconds
         while not condition():
-            hold(time.monotonic() < end, f"{words}, for {seconds:g} s")
+            if time.monotonic() >= end:
+                raise BrokenError(f"{words() if callable(words) else words}; for {seconds:g} s")
             time.sleep(0.01)
 
     def closed(self, seconds: float = 4.0) -> None:
