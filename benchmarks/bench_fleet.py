@@ -94,10 +94,10 @@ def diagnosed(folder: Path, rig: Path) -> float:
 
 def night(name: str, seconds: float) -> str:
     """What so many machines take."""
-    cores = MACHINES * seconds / NIGHT
+    hours = MACHINES * seconds / 3600.0
     return (
-        f"{name}: {seconds:.2f} s of a processor each; {MACHINES:,} machines: {MACHINES * seconds / 3600.0:.1f} h of one, "
-        f"{cores:.1f} processors for a night of {NIGHT / 3600.0:.0f} h"
+        f"{name}: {seconds:.2f} s of a processor each; {MACHINES:,} machines: {hours:.1f} h of one, "
+        f"{3600.0 * hours / NIGHT:.1f} processors for a night of {NIGHT / 3600.0:.0f} h"
     )
 
 

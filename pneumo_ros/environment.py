@@ -35,8 +35,9 @@ LIBRARIES = {
     "zstandard": ("zstandard", None),
     "plotly": ("plotly", "python3-plotly"),  # for reports only, and so is the next
     "matplotlib": ("matplotlib", "python3-matplotlib"),
+    "distributed": ("distributed", "python3-distributed"),  # for sweeps over a Dask cluster only
 }
-NEEDED = tuple(name for name in LIBRARIES if name not in ("plotly", "matplotlib"))
+NEEDED = tuple(name for name in LIBRARIES if name not in ("plotly", "matplotlib", "distributed"))
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 
 

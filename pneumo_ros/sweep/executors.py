@@ -7,6 +7,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import suppress
 from typing import Any, ParamSpec, TypeVar
 
+from pneumo_ros.environment import require_libraries
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 
@@ -77,10 +78,9 @@ def _processes(count: str) -> Pool:
 
 
 def _dask(address: str) -> Pool:
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise UsageError("dask needs the package distributed; type: pip install 'pneumo_ros[dask]'") from error
+    require_libraries(("distributed",))
+    from distributed import Client
+
     if "://" not in address:
         raise UsageError(f"dask={address} takes the address of a scheduler, such as dask=tcp://localhost:8786")
     try:

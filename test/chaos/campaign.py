@@ -88,9 +88,9 @@ def campaign(
         with ExitStack() as stack:
             place = folder / f"field_{len(waiting)}"
             place.mkdir()
-            field = Field(place, seed + len(waiting), stack)
-            name = "the end"
+            field, name = None, "the beginning"
             try:
+                field = Field(place, seed + len(waiting), stack)
                 while waiting and time.monotonic() - begun < seconds:
                     name, at = waiting.pop(0), time.monotonic()
                     counts[name] += 1
@@ -104,7 +104,10 @@ def campaign(
                 words = f"{name}: {error}\n" + traceback.format_exc(limit=-3)
                 told(words)
                 broken.setdefault(name, []).append(words)
-            recorded, losses = recorded + field.counts["recorded"], losses + field.losses
+            if field is not None:
+                recorded, losses = recorded + field.counts["recorded"], losses + field.losses
+            elif len(broken[name]) > 2:  # nothing runs here
+                break
     names = [*counts, *(name for name in broken if name not in counts)]
     results = [Result(name, counts[name], longest[name], broken.get(name, [])) for name in sorted(names)]
     return Outcome(results, recorded, losses, without, time.monotonic() - begun)

@@ -87,7 +87,8 @@ def read_only_folder(field: Field) -> None:
 
 def _command(field: Field, *words: str, quiet_code: tuple[int, ...] = (3,)) -> str:
     with running(*COMMAND, *words, cwd=field.folder) as process:
-        code = process.end(None)
+        code = process.process.wait(ANSWER)
+        process.end(None)
         hold(code in quiet_code, f"pneumo {words[0]} ended with {code}: {process.said[-300:]}")
         return process.said
 
