@@ -1,9 +1,9 @@
 """Bad input for every parser: how many inputs were answered by a clear error, how many by a result, and what else.
 
 Inputs are drawn by property-based testing: recordings, databases and texts with random damage, and grammars of files
-that are nearly right. A traceback, a message of more than 2000 characters, a warning of Python, 10 s, 1 GB, or a file
-that code in an input has made counts as broken. Then a recording is cut at random places: everything that the file
-holds before the cut, to the last whole message, is compared with the uncut one.
+that are nearly right. A traceback, a message of more than 2000 characters, a warning of Python, 10 s of a processor,
+1 GB, or a file that code in an input has made counts as broken. Then a recording is cut at random places: every message
+of a whole chunk before the cut must be read, and nothing that the uncut file does not hold.
 
     python benchmarks/fuzz.py [--inputs 100000] [--cuts 500] [--seed 1] [--only WORD]
 
@@ -27,7 +27,7 @@ KEPT = 3  # broken inputs shown of each parser
 
 
 class Row(NamedTuple):
-    """One parser: inputs by verdict, worst time [s], memory above the start [MB], and the words of what is broken."""
+    """One parser: inputs by verdict, worst processor time [s], memory above the start [MB], and the words of what is broken."""
 
     name: str
     kinds: dict[str, int]
@@ -111,7 +111,10 @@ def main() -> int:
     chosen = [number for number, parser in enumerate(PARSERS) if options.only in parser.name]
     jobs = [(number, max(options.inputs // len(chosen), 1), options.seed) for number in chosen]
     with multiprocessing.get_context("spawn").Pool(options.jobs, maxtasksperchild=1) as pool:
-        rows = pool.map(fuzz_one, jobs, chunksize=1)
+        rows = []
+        for row in pool.imap(fuzz_one, jobs):
+            rows.append(row)
+            print(f"{len(rows)}/{len(jobs)} {row.name}: {sum(row.kinds.values())} inputs", file=sys.stderr, flush=True)
     print(f"seed {options.seed}, {time.monotonic() - begun:.0f} s\n{table(rows)}")
     for row in rows:
         for number, (words, data) in enumerate(list(row.broken.items())[:KEPT]):

@@ -83,14 +83,13 @@ def campaign(
     faults, without = kinds(folder)
     waiting = order(names or faults, count, Random(seed))
     counts, longest, broken = Counter[str](), Counter[str](), dict[str, list[str]]()
-    recorded, losses, begun = 0, list[float](), time.monotonic()
+    fields, recorded, losses, begun = 0, 0, list[float](), time.monotonic()
     while waiting and time.monotonic() - begun < seconds:
         with ExitStack() as stack:
-            place = folder / f"field_{len(waiting)}"
-            place.mkdir()
+            fields += 1
             field, name = None, "the beginning"
             try:
-                field = Field(place, seed + len(waiting), stack)
+                field = Field(folder / f"field_{fields}", seed + fields, stack)
                 while waiting and time.monotonic() - begun < seconds:
                     name, at = waiting.pop(0), time.monotonic()
                     counts[name] += 1

@@ -48,7 +48,7 @@ class Field:
         self.bags: list[Path] = []
         self.losses: list[float] = []  # s, of recorders that were killed
         self.counts = {"recorded": 0}
-        (folder / "runs").mkdir()
+        (folder / "runs").mkdir(parents=True)
         for name in OPTIONS:
             self.start(name)
         self.probe = AxisProbe(PLACE)

@@ -6,7 +6,13 @@ from random import Random
 import pytest
 from chaos.campaign import campaign, kinds, order
 
-FAULTS = ("bytes that are no message", "clock jumps", "kill -9 of the recorder", "oversized messages", "read-only folder")
+FAULTS = (
+    "bytes that are no message",
+    "clock jumps",
+    "kill -9 of the recorder",
+    "oversized messages",
+    "read-only folder",
+)
 
 
 def test_faults_leave_everything_in_order(tmp_path: Path) -> None:
