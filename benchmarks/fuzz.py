@@ -27,7 +27,7 @@ KEPT = 3  # broken inputs shown of each parser
 
 
 class Row(NamedTuple):
-    """One parser: inputs by verdict, worst processor time [s], memory above the start [MB], and the words of what is broken."""
+    """One parser: inputs by verdict, worst processor time [s], memory above the start [MB], and what is broken."""
 
     name: str
     kinds: dict[str, int]

@@ -22,7 +22,7 @@ ERROR, RESULT, BROKEN = "clear error", "result", "traceback"
 
 
 class Verdict(NamedTuple):
-    """How one input was answered, in how many seconds of a processor, and the words: the error's, or those of the traceback."""
+    """How one input was answered, in how many seconds of a processor, and the words of the error or traceback."""
 
     kind: str
     seconds: float
