@@ -1,6 +1,10 @@
 # make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
 # make test   lint, types and tests, as continuous integration runs them
 # make bench  print the tables of benchmarks/
+# make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
+# make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
+# make endurance  24 h of simulated and 20 min of real time; ENDURANCE="--hours 1 --minutes 2" for less
+# make supply     wheel and archive installed and run in empty environments, licences; PYTHONS="python3.10 python3.13"
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
@@ -35,7 +39,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench clean
+.PHONY: help demo test bench fuzz chaos endurance supply clean
 .DELETE_ON_ERROR:
 
 help:
@@ -61,6 +65,18 @@ test: $(READY) | .cache/tmp
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done
+
+fuzz: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/fuzz.py $(FUZZ)
+
+chaos: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/chaos.py $(CHAOS)
+
+endurance: $(READY) | .cache/tmp
+	$(BIN)/python benchmarks/endurance.py $(ENDURANCE)
+
+supply: $(READY) | .cache/tmp
+	$(BIN)/python tools/supply.py $(if $(PYTHONS),--python $(PYTHONS))
 
 clean:
 	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info

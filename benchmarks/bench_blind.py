@@ -19,13 +19,15 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import blind_figures as figures
 import blind_tables as tables
 from blind_case import KINDS, PARTNER, ROOT, code_hash, drawn_strength
+
+from pneumo_ros.sweep import Pool, open_pool, sweep
 
 Job = tuple[str, int, float]  # kind, seed, strength
 Key = tuple[str, str, int, float]  # code and job
@@ -40,6 +42,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--kind", choices=(*KINDS, "all"), default="all")
     parser.add_argument("--strength", type=float, help="share of full strength, for all; else drawn from 0.2 to 1")
     parser.add_argument("--jobs", type=int, default=2, help="cases side by side (default 2)")
+    parser.add_argument("--executor", metavar="NAME", help="such as dask=tcp://HOST:PORT, in place of --jobs")
     parser.add_argument("--json", type=Path, default=ROOT / ".cache" / "blind.jsonl", metavar="FILE", help="results")
     parser.add_argument("--code", help="tables of results of this code (default: of the code that is here)")
     return parser.parse_args()
@@ -69,7 +72,7 @@ def stored(path: Path) -> dict[Key, dict[str, Any]]:
     return found
 
 
-def run_case(job: Job) -> tuple[str, str]:
+def run_case(*job: object) -> tuple[str, str]:
     """Output and error output of one case, in a process of its own."""
     paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths)), "OPENBLAS_NUM_THREADS": "1"}
@@ -78,15 +81,22 @@ def run_case(job: Job) -> tuple[str, str]:
     return done.stdout, "" if done.returncode == 0 else done.stderr or f"ended by signal {-done.returncode}"
 
 
+def make_pool(options: argparse.Namespace) -> Pool:
+    """Threads, for each case has a process of its own anyway; or what --executor asks for."""
+    if options.executor:
+        return open_pool(options.executor)
+    return Pool(lambda: ThreadPoolExecutor(options.jobs), options.jobs)
+
+
 def run_all(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
     """Run cases and append their results to the file; returns what failed."""
     broken, begun = [], time.monotonic()
     options.json.parent.mkdir(parents=True, exist_ok=True)
-    with options.json.open("a") as file, ThreadPoolExecutor(options.jobs) as pool:
-        waiting = {pool.submit(run_case, job): job for job in jobs}
+    names = {" ".join(map(str, job)): job for job in jobs}
+    with options.json.open("a") as file, make_pool(options) as pool:
         try:
-            for count, future in enumerate(as_completed(waiting), 1):
-                job, (out, problem) = waiting[future], future.result()
+            for count, done in enumerate(sweep(run_case, names, pool), 1):
+                job, (out, problem) = names[done.key], done.result
                 if problem:
                     broken.append(f"{job[0]} {job[1]} {job[2]}: {problem.strip().splitlines()[-1]}")
                 file.write("" if problem else out)
@@ -97,7 +107,6 @@ def run_all(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
                     f"{count}/{len(jobs)}, {left:.0f} min left: {job[0]} {job[1]}: {text}", file=sys.stderr, flush=True
                 )
         except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
             print("interrupted; the same command goes on from here", file=sys.stderr)
     return broken
 

@@ -38,8 +38,9 @@ LIBRARIES = {
     "dash": ("dash", None),  # for the workbench only, and so is the next
     "waitress": ("waitress", "python3-waitress"),
     "rich": ("rich", "python3-rich"),  # for pneumo view only
+    "distributed": ("distributed", None),  # for sweeps over a Dask cluster only
 }
-OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich")
+OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
 

@@ -1,5 +1,7 @@
 """What a user can be told: one class per exit code of the commands."""
 
+import reprlib
+
 
 class PneumoError(Exception):
     """Any failure that is explained to the user in words; `exit_code` is what a command then returns."""
@@ -23,3 +25,12 @@ class NumericalError(PneumoError):
     """A computation that did not converge or left the finite numbers."""
 
     exit_code = 4
+
+
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel = 2  # what a file holds may be long and deep
+
+
+def brief(value: object) -> str:
+    """What was given, for an error message: never more than a line."""
+    return _SHORT.repr(value)

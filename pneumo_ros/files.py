@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import DataError, UsageError
 
 
 def check_writable(path: str | Path) -> Path:
@@ -24,9 +24,18 @@ def check_writable(path: str | Path) -> Path:
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
-    """Write `content` (text as UTF-8) to `path`, replacing a file there in one step: readers see the old or the new."""
+    """Write `content` (text as UTF-8) to `path`, replacing a file there in one step: readers see the old or the new.
+
+    Raises UsageError when no file can be made there, DataError when the disk is full or fails.
+    """
     target = check_writable(path).resolve()  # a link stays a link
-    data = content.encode("utf-8") if isinstance(content, str) else content
+    try:
+        _write(target, content.encode("utf-8") if isinstance(content, str) else content)
+    except OSError as error:
+        raise DataError(f"cannot write {path}: {error.strerror}; what was there is as it was") from error
+
+
+def _write(target: Path, data: bytes) -> None:
     if target.exists() and not target.is_file():  # a device or pipe, such as /dev/null: nothing to replace
         target.write_bytes(data)
         return
@@ -54,14 +63,19 @@ def check_new_folder(path: str | Path) -> Path:
 def whole_folder(path: str | Path) -> Iterator[Path]:
     """A folder to make and fill, which becomes `path` when the block ends well and vanishes when it does not.
 
-    UsageError when `path` exists or cannot be made.
+    UsageError when `path` exists or cannot be made, DataError when the disk is full or fails.
     """
     target = check_new_folder(path)
-    # The folder keeps its name inside: some files in a recording are named after it.
-    around = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    try:
+        # The folder keeps its name inside: some files in a recording are named after it.
+        around = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    except OSError as error:
+        raise DataError(f"cannot write {path}: {error.strerror}") from error
     try:
         yield around / target.name
         os.rename(around / target.name, target)
+    except OSError as error:
+        raise DataError(f"cannot write {path}: {error.strerror}") from error
     finally:
         shutil.rmtree(around, ignore_errors=True)
 

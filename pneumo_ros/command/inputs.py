@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.nearest import unknown_name
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+_FAR = 1e12  # s; farther away from zero, a double does not tell milliseconds apart
 FORMS = "constant:V, step:V@T, sine:V,HZ, file.csv, or the folder or .mcap of a recording"
 
 
@@ -78,7 +79,9 @@ def _numbers(text: str, separator: str, form: str, example: str) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != (2 if separator else 1) or not all(map(math.isfinite, numbers)):
-        raise UsageError(f"'{text}' does not fit {form}, with finite numbers in V, s and Hz; an example is {example}")
+        raise UsageError(
+            f"{brief(text)} does not fit {form}, with finite numbers in V, s and Hz; an example is {example}"
+        )
     return numbers
 
 
@@ -101,7 +104,9 @@ def read_csv(path: Path) -> Drive:
             rows.append(row)
         elif line.strip() and not line.startswith("#") and not (number == 1 and row is None):
             expected = "a time above the last one and a voltage" if rows else "a time [s] and a voltage [V]"
-            raise DataError(f"{path}, line {number}: expected {expected}, separated by a comma, and found '{line}'")
+            raise DataError(
+                f"{path}, line {number}: expected {expected}, separated by a comma, and found {brief(line)}"
+            )
     if len(rows) < 2:
         raise DataError(f"{path} holds {len(rows)} rows; needed are at least two of time [s], voltage [V]")
     time, volts = np.array(rows).T
@@ -122,4 +127,4 @@ def _row(line: str) -> tuple[float, float] | None:
         time, volts = (float(cell) for cell in line.replace(";", ",").split(",")[:2])
     except ValueError:
         return None
-    return (time, volts) if math.isfinite(time) and math.isfinite(volts) else None
+    return (time, volts) if abs(time) < _FAR and math.isfinite(volts) else None

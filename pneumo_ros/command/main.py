@@ -10,7 +10,7 @@ from pneumo_ros import __version__
 from pneumo_ros.command.arguments import Parser
 from pneumo_ros.command.console import Console, columns
 from pneumo_ros.environment import LIBRARIES, library_advice
-from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.nearest import unknown_name
 
 VERBS = (
@@ -23,6 +23,7 @@ VERBS = (
     "effects",
     "experiment",
     "tune",
+    "fleet",
     "view",
     "workbench",
 )  # in the order help lists them; each is a module beside this one
@@ -45,6 +46,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of stdout left, as `head` does; nothing more can be said there
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
+    except OSError as error:  # what the system says no to: a folder that may not be read, a disk that fails
+        where = f"{error.filename}: " if error.filename else ""
+        return _fail(f"{where}{error.strerror or error}", DataError.exit_code)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
 

@@ -1,20 +1,20 @@
 """Control files: the law, its gains and the smoothing of the valve, as ROS parameters of the controller."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from pneumo_ros.control.law import Law
 from pneumo_ros.control.laws import LAWS
 from pneumo_ros.control.machine import Machine
 from pneumo_ros.control.valve import ValveInverse
-from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.files import yaml_number
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.yaml_text import load_yaml
 
 SMOOTHING = ValveInverse().smoothing
 
@@ -57,8 +57,8 @@ def load_control(name_or_path: str | Path) -> Control:
     path, shipped = Path(name_or_path), files("pneumo_ros.config").joinpath(f"control/{name_or_path}.yaml")
     try:
         own = path.is_file() or path.name != str(name_or_path) or not shipped.is_file()
-        document = yaml.safe_load((path if own else shipped).read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
+        document = load_yaml((path if own else shipped).read_text(encoding="utf-8"))
+    except (OSError, ValueError, UsageError) as error:
         raise DataError(
             f"control file {name_or_path} cannot be read ({error}); give a YAML file or one of: {', '.join(LAWS)}"
         ) from error
@@ -70,13 +70,23 @@ def load_control(name_or_path: str | Path) -> Control:
 
 def _control(document: Any) -> Control:
     try:
-        given = document["/**"]["ros__parameters"]
+        given: dict[str, Any] = document["/**"]["ros__parameters"]
         law = given["law"]
-    except (TypeError, KeyError) as error:
+    except (TypeError, KeyError, IndexError) as error:
         raise UsageError("it takes '/**:', 'ros__parameters:' and in there 'law: ...'") from error
-    if law not in LAWS:
-        raise UsageError(unknown_name("law", str(law), LAWS))
-    gains = given.get(law) or {}
-    LAWS[law](gains)  # whether they are gains of it
-    smoothing = (given.get("valve") or {}).get("smoothing", SMOOTHING)
-    return Control(law, {name: float(value) for name, value in gains.items()}, float(smoothing))
+    if not isinstance(law, str) or law not in LAWS:
+        raise UsageError(unknown_name("law", law if isinstance(law, str) else brief(law), LAWS))
+    gains, valve = _section(given, law), _section(given, "valve")
+    made = LAWS[law](gains)  # whether they are gains of it
+    smoothing = valve.get("smoothing", SMOOTHING)
+    if isinstance(smoothing, bool) or not isinstance(smoothing, int | float) or not 0.0 <= smoothing < math.inf:
+        raise UsageError(f"valve.smoothing is {brief(smoothing)}; it takes a voltage of 0 V or more")
+    return Control(law, {name: getattr(made, name) for name in gains}, float(smoothing))
+
+
+def _section(given: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The entries of a section, which may be missing or empty."""
+    entries = given.get(name) or {}
+    if not isinstance(entries, dict) or not all(isinstance(key, str) for key in entries):
+        raise UsageError(f"section {name} is {brief(entries)}; it takes entries, name: value")
+    return entries

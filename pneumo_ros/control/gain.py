@@ -1,10 +1,9 @@
 """A number of a control law that may be tuned: default, unit, meaning and range."""
 
-import math
 from dataclasses import dataclass
 from typing import overload
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import UsageError, brief
 
 
 @dataclass(frozen=True)
@@ -30,8 +29,7 @@ class Gain:
 
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            number = float(value)
-            if math.isfinite(number) and self.low <= number <= self.high:
-                return number
-        raise UsageError(f"gain {name} is {value!r}; allowed is {self.low:g} to {self.high:g} {self.unit}")
+        # compared before it is converted: an integer may be larger than any double
+        if isinstance(value, int | float) and not isinstance(value, bool) and self.low <= value <= self.high:
+            return float(value)
+        raise UsageError(f"gain {name} is {brief(value)}; allowed is {self.low:g} to {self.high:g} {self.unit}")

@@ -6,10 +6,11 @@ from typing import Any
 
 import yaml
 
-from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.experiment import voltages
 from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.yaml_text import load_yaml
 
 _NUMBERS = {"low": "m", "high": "m", "end": "m", "return_right": "V", "return_left": "V", "rest": "s"}
 _TRIAL = ("name", "constant", "steps", "sweep", "seconds", "patience", "travel", "anywhere")
@@ -50,9 +51,10 @@ def read_programme(path: str | Path) -> Programme:
     none.
     """
     try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        reason = getattr(error, "strerror", None) or getattr(error, "problem", None) or "it is no UTF-8 text"
+        document = load_yaml(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, UsageError) as error:
+        words = str(error) if isinstance(error, UsageError) else "it is no UTF-8 text"
+        reason = error.strerror if isinstance(error, OSError) else words
         raise DataError(f"cannot read the programme {path}: {reason}") from error
     try:
         return _programme(document)
@@ -78,7 +80,7 @@ def _trial(entry: object) -> Trial:
     numbers = {key: _number(given, key, unit) for key, unit in {"patience": "s", "travel": "m"}.items() if key in given}
     anywhere = given.get("anywhere", False)
     if not isinstance(anywhere, bool):
-        raise UsageError(f"trial '{name}': anywhere is {anywhere!r}; it takes true or false")
+        raise UsageError(f"trial '{name}': anywhere is {brief(anywhere)}; it takes true or false")
     try:
         return Trial(name, voltages.from_dict(given), _number(given, "seconds", "s"), anywhere=anywhere, **numbers)
     except UsageError as error:
@@ -87,7 +89,7 @@ def _trial(entry: object) -> Trial:
 
 def _section(value: object, what: str, allowed: Iterable[str]) -> dict[str, Any]:
     if not isinstance(value, dict):
-        raise UsageError(f"{what} takes entries, name: value, and is {str(value)[:60]!r}")
+        raise UsageError(f"{what} takes entries, name: value, and is {brief(value)}")
     for name in value:
         if name not in allowed:
             raise UsageError(f"{unknown_name('entry', str(name), allowed)} ({what})")
@@ -97,8 +99,11 @@ def _section(value: object, what: str, allowed: Iterable[str]) -> dict[str, Any]
 def _number(given: dict[str, Any], name: str, unit: str) -> float:
     value = given.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise UsageError(f"{name} is {value!r}; it takes a number [{unit}]")
-    return float(value)
+        raise UsageError(f"{name} is {brief(value)}; it takes a number [{unit}]")
+    try:
+        return float(value)
+    except OverflowError as error:  # an integer that is no double
+        raise UsageError(f"{name} is {brief(value)}; it takes a number [{unit}]") from error
 
 
 def commands_text(programme: Programme, commands: Iterable[tuple[float, float]]) -> str:

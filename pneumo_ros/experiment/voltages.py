@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import UsageError, brief
 
 
 @dataclass(frozen=True)
@@ -106,16 +106,16 @@ def from_dict(given: dict[str, Any]) -> Voltage:
             return _checked(Steps(tuple((float(seconds), float(volts)) for seconds, volts in given["steps"])))
         if kinds == ["sweep"]:
             return _checked(Sweep(**{key: float(value) for key, value in given["sweep"].items()}))
-    except (TypeError, ValueError, AttributeError) as error:
-        raise UsageError(f"{kinds[0]} is {given[kinds[0]]!r}; a trial takes {FORMS}") from error
+    except (TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise UsageError(f"{kinds[0]} is {brief(given[kinds[0]])}; a trial takes {FORMS}") from error
     raise UsageError(f"a trial takes one of {FORMS}; given: {', '.join(kinds) or 'none of them'}")
 
 
 def _checked(voltage: Voltage) -> Voltage:
     """ValueError unless all numbers are finite and all durations positive."""
-    numbers = [voltage.largest] if not isinstance(voltage, Steps) or voltage.levels else [math.nan]
-    lengths = [1.0]
-    if isinstance(voltage, Steps):
+    numbers, lengths = [voltage.largest] if not isinstance(voltage, Steps) else [], [1.0]
+    if isinstance(voltage, Steps):  # the largest of them would hide a NaN
+        numbers = [volts for _, volts in voltage.levels]
         lengths = [seconds for seconds, _ in voltage.levels]
     elif isinstance(voltage, Sweep):
         lengths = [voltage.seconds]

@@ -21,7 +21,6 @@ import ast
 import inspect
 import math
 import re
-import reprlib
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -29,22 +28,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import UsageError, brief
 from pneumo_ros.plant.maths import atan, cos, exp, log, pi, power, sign, sin, sqrt, tanh
 
 __all__ = [
     "Effect", "Function", "Parameter", "State",
     "atan", "cos", "exp", "log", "pi", "power", "sign", "sin", "sqrt", "tanh",
 ]  # fmt: skip
-
-
-_SHORT = reprlib.Repr()
-_SHORT.maxlevel = 2  # what a file holds may be long and deep
-
-
-def brief(value: object) -> str:
-    """What was given, for an error message: never more than a line."""
-    return _SHORT.repr(value)
 
 
 @dataclass(frozen=True)

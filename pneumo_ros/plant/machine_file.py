@@ -5,14 +5,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.files import write_whole, yaml_number
 from pneumo_ros.nearest import unknown_name
-from pneumo_ros.plant.effect import brief
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.model import Model
+from pneumo_ros.yaml_text import load_yaml
 
 
 def shipped_machines() -> tuple[str, ...]:
@@ -53,26 +51,9 @@ def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | 
         raise UsageError(f"machine file {name_or_path}: {error}") from error
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML's safe subset, which refuses a name given twice instead of keeping the last."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        names = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
-        for key, _ in node.value:
-            if names.count(key.value) > 1 and isinstance(key, yaml.ScalarNode):
-                raise yaml.constructor.ConstructorError(None, None, f"{key.value} is given twice", key.start_mark)
-        return super().construct_mapping(node, deep)
-
-
 def parse_machine(text: str, name: str, library: Library) -> Model:
     """The model a machine file's text describes; UsageError as for `load_model`."""
-    try:
-        document = yaml.load(text, _Loader)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        place = getattr(error, "problem_mark", None)
-        where = f" at line {place.line + 1}" if place else ""
-        raise UsageError(f"this cannot be read as YAML{where}: {getattr(error, 'problem', None) or error}") from error
-    return model_from_dict(_parameters(document), name, library)
+    return model_from_dict(_parameters(load_yaml(text)), name, library)
 
 
 def _parameters(document: object) -> dict[str, Any]:

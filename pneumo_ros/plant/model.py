@@ -308,9 +308,14 @@ class Model:
         """What can be seen along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
 
         `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract; the others as in `signals`.
+        voltage (samples,) or one for all. Raises UsageError for too few.
         """
         X = np.array(states, dtype=float, ndmin=2)
         U = np.zeros(len(X)) if voltage is None else np.array(voltage, dtype=float, ndmin=1)
+        if len(U) == 1:
+            U = np.repeat(U, len(X))
+        if len(U) < len(X):  # the kernel would read on beyond them
+            raise UsageError(f"{len(U)} voltages do not reach over {len(X)} samples")
         observed = np.empty((len(X), len(self.composition.observed)))
         self.kernel.observe(X, self.values, U, start + sample_time * np.arange(1, len(X) + 1), observed)
         result = {name: X[:, i] for i, name in enumerate(self.states)}

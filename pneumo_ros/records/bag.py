@@ -11,6 +11,8 @@ from pneumo_ros.records.block import Block, Channel, Integers
 from pneumo_ros.records.contract import LATCHED, split
 from pneumo_ros.records.source import find_sources
 
+EVER = int(np.iinfo(np.int64).min)  # ns; recorders with a broken clock have written times before 1970
+
 
 class Message(NamedTuple):
     """One serialized message as it was recorded."""
@@ -62,7 +64,7 @@ class Bag:
         seen.latched.sort(key=lambda message: message.log_time)
         return seen._replace(start=min(first), end=max(last))
 
-    def messages(self, since: int = 0) -> Iterator[Message]:
+    def messages(self, since: int = EVER) -> Iterator[Message]:
         """Every message in recorded time, those of equal times in the order of the file; a few blocks in memory.
 
         Those recorded before `since` [ns] are left out.

@@ -35,6 +35,7 @@ class BagWriter:
         self._schemas: dict[str, int] = {}
         self._span: tuple[int, int] | None = None
         self._due = self._describe_due = 0.0
+        self._waiting = 0  # messages since the last flush
         self._closed = False
         check_new(self.path)
         self._name = f"{self.path.resolve().name}_0.mcap"
@@ -71,6 +72,7 @@ class BagWriter:
         channel = self._topics[topic][2]
         self._writer.add_message(channel, log_time, payload, log_time if publish_time is None else publish_time)
         self.counts[topic] += 1
+        self._waiting += 1
         first, last = self._span or (log_time, log_time)
         self._span = (min(first, log_time), max(last, log_time))
         self.flush_if_due()
@@ -85,6 +87,7 @@ class BagWriter:
         self._due = time.monotonic() + FLUSH
         try:
             self._writer.flush()  # type: ignore[no-untyped-call]  # mcap annotates only some of its methods
+            self._waiting = 0
             self._describe()
         except OSError as error:
             raise self._failed(error) from error
@@ -129,7 +132,8 @@ class BagWriter:
         return information(Contents(self._name, topics, first, last))
 
     def _failed(self, error: OSError) -> DataError:
-        return DataError(f"Cannot write {self.path}: {error.strerror}.")
+        lost = f" The last {self._waiting} messages are lost; those before are in it." if self._waiting else ""
+        return DataError(f"Cannot write {self.path}: {error.strerror}.{lost}")
 
 
 def check_new(path: Path) -> None:

@@ -33,8 +33,10 @@ def outside_gaps(series: Series, others: Iterable[Series]) -> Series:
     inside = np.zeros(len(series), dtype=bool)
     for one in others:
         wide = _wide(one)
+        if not len(wide):
+            continue
         after = np.searchsorted(one.stamp[wide], series.stamp, side="left") - 1  # the last gap that begins before
-        inside |= (after >= 0) & (series.stamp < one.stamp[np.append(wide, 0)[after] + 1])
+        inside |= (after >= 0) & (series.stamp < one.stamp[wide[after] + 1])
     return series.select(~inside)
 
 

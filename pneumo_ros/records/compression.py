@@ -5,29 +5,42 @@ from pathlib import Path
 import lz4.frame  # type: ignore[import-untyped]  # the package ships no types
 import zstandard
 
-from pneumo_ros.errors import DataError
+from pneumo_ros.errors import DataError, brief
 
 _PIECE = 1024  # bytes fed at a time when the whole does not decompress
+_ALWAYS, _RATIO = 1 << 26, 200  # bytes; times the compressed size: messages of an axis are not packed as tightly
+_LZ4 = 255  # to one, which lz4 cannot exceed
 
 
 def decompress(content: memoryview, compression: str, size: int, path: Path) -> bytes:
     """Decompressed `content`, of `size` bytes when it is whole; else the part before the damage.
 
-    Raises DataError when the compression is neither none, zstd nor lz4.
+    Of what is packed more tightly than any recording, and would fill the memory, only the beginning. Raises DataError
+    when the compression is neither none, zstd nor lz4.
     """
     if not compression:
         return bytes(content)
     if compression not in ("zstd", "lz4"):
-        raise DataError(f"{path} is compressed with '{compression}'; zstd, lz4 and none can be read.")
+        raise DataError(f"{path} is compressed with {brief(compression)}; zstd, lz4 and none can be read.")
+    most = max(_ALWAYS, _RATIO * len(content))
     try:
-        whole: bytes = zstandard.decompress(content, size) if compression == "zstd" else lz4.frame.decompress(content)
-        return whole
+        if max(size, _announced(content, compression)) <= most:
+            whole = zstandard.decompress(content, size) if compression == "zstd" else lz4.frame.decompress(content)
+            return bytes(whole)
     except (zstandard.ZstdError, RuntimeError, MemoryError):
-        return _readable_part(content, compression)
+        pass
+    return _readable_part(content, compression, most)
 
 
-def _readable_part(content: memoryview, compression: str) -> bytes:
-    """Everything that decompresses before the break."""
+def _announced(content: memoryview, compression: str) -> int:
+    """How many bytes the content says it becomes; as many as it can become where it does not say."""
+    if compression == "zstd":
+        return int(zstandard.frame_content_size(content))  # -1 when it does not say: no more than `size` then
+    return int(lz4.frame.get_frame_info(content)["content_size"]) or _LZ4 * len(content)
+
+
+def _readable_part(content: memoryview, compression: str, most: int) -> bytes:
+    """Everything that decompresses before the break, or about `most` bytes."""
     if compression == "zstd":
         stream = zstandard.ZstdDecompressor().decompressobj()
     else:
@@ -36,6 +49,9 @@ def _readable_part(content: memoryview, compression: str) -> bytes:
     try:
         for start in range(0, len(content), _PIECE):
             parts.append(stream.decompress(bytes(content[start : start + _PIECE])))
+            most -= len(parts[-1])
+            if most < 0:
+                break
     except (zstandard.ZstdError, RuntimeError, EOFError):
         pass  # this is the damage: what came before it is what there is
     return b"".join(parts)

@@ -1,6 +1,7 @@
 """An MCAP file that is valid whenever it is looked at, also after its writer was killed."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from mcap.data_stream import RecordBuilder
@@ -43,18 +44,31 @@ class GrowingFile:
         return self._settled + len(self._new)
 
     def flush(self) -> None:
-        """Bring what is new to the file. Raises OSError when the disk is full."""
-        _write_at(self._descriptor, self._new + self.END, self._settled)
+        """Bring what is new to the file. Raises OSError when the disk is full; the file is then as it was before."""
+        try:
+            _write_at(self._descriptor, self._new + self.END, self._settled)
+        except OSError:
+            self._restore()
+            raise
         self._settled += len(self._new)
         self._new.clear()
 
     def close(self) -> None:
-        """Bring the rest, which has an end of its own, to the disk."""
+        """Bring the rest, which has an end of its own, to the disk. Raises OSError as `flush` does."""
         try:
             _write_at(self._descriptor, self._new, self._settled)
             os.fsync(self._descriptor)
+        except OSError:
+            self._restore()
+            raise
         finally:
             os.close(self._descriptor)
+
+    def _restore(self) -> None:
+        """Put the end back where it was: that room on the disk is taken already."""
+        with suppress(OSError):  # a disk that fails in another way: the first failure is what is told
+            _write_at(self._descriptor, bytearray(self.END), self._settled)
+            os.ftruncate(self._descriptor, self._settled + len(self.END))
 
 
 def _write_at(descriptor: int, data: bytearray, position: int) -> None:

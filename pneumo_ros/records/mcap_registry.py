@@ -1,15 +1,17 @@
 """What the records of an MCAP file say about its messages: channels with their schemas, and how it was written."""
 
 import struct
+from functools import lru_cache
 from io import BytesIO
 
-import yaml
 from mcap import records
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
+from pneumo_ros.errors import UsageError
 from pneumo_ros.records.block import Channel
+from pneumo_ros.yaml_text import load_yaml
 
 LIBRARY = "pneumo_ros"  # how files written here name their writer
 
@@ -55,10 +57,13 @@ class Registry:
         )
 
 
+@lru_cache(maxsize=256)  # every chunk repeats its channels
 def _latches(profiles: str) -> bool:
     """Whether one of the YAML quality-of-service `profiles` is transient local (rosbag2 writes the name or a 1)."""
     try:
-        offered = yaml.safe_load(profiles) or []
-    except yaml.YAMLError:
+        offered = load_yaml(profiles)
+    except UsageError:
         return False
-    return any(isinstance(one, dict) and one.get("durability") in (1, "transient_local") for one in offered)
+    return isinstance(offered, list) and any(
+        isinstance(one, dict) and one.get("durability") in (1, "transient_local") for one in offered
+    )

@@ -7,8 +7,9 @@ import struct
 from functools import lru_cache
 from typing import Any
 
+from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from pneumo_ros.errors import DataError, UsageError
@@ -16,6 +17,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Channel
 
 ENCAPSULATION = 4  # bytes before a message that tell its byte order
+MOST_VALUES = 10_000  # of a message; more are nested so that a short definition fills any memory
 _IDL_PART = "=" * 80 + "\nIDL: "
 
 
@@ -46,9 +48,39 @@ def types_of(message_type: str, definition_format: str, definition: str) -> Type
                     store.register(get_types_from_idl(part.split("\n", 1)[1] if _IDL_PART in definition else part))
         else:
             raise DataError(f"{message_type} is defined in the format '{definition_format}'; ros2msg and ros2idl work.")
-    except (TypesysError, SyntaxError, ValueError) as error:
-        raise DataError(f"The recording's definition of {message_type} cannot be understood: {error}") from error
+    except DataError:
+        raise
+    except Exception as error:  # rosbags runs what it has made of the definition, and that can fail in any way
+        reason = " ".join(str(error).split())[:200]
+        raise DataError(f"The recording's definition of {message_type[:200]} cannot be understood: {reason}") from error
+    _values(store, message_type, ())
     return store
+
+
+def _values(store: Typestore, message_type: str, around: tuple[str, ...]) -> int:
+    """How many values a message has at most, a sequence counted once.
+
+    Raises DataError beyond MOST_VALUES, or for a type that holds itself: what is made of it would never end.
+    """
+    if message_type in around:
+        raise DataError(f"The recording's definition of {around[0]} holds {message_type} within itself.")
+    total = 0
+    definition: Any = store.fielddefs.get(message_type, ((), ()))[
+        1
+    ]  # rosbags' own type of it is too wide to be followed
+    for _, (node, content) in definition:
+        several = node in (Nodetype.ARRAY, Nodetype.SEQUENCE)
+        inner, times = content if several else ((node, content), 1)
+        if inner[0] == Nodetype.NAME:
+            one = _values(store, inner[1], (*around, message_type))
+        else:
+            one = 1 if several and inner[1][0] in ("string", "wstring") else 0
+        total += 1 + one * (times if node == Nodetype.ARRAY else 1)
+        if total > MOST_VALUES:
+            raise DataError(
+                f"The recording's definition of {(*around, message_type)[0]} has too many fields to be read."
+            )
+    return total
 
 
 def channel_types(channel: Channel) -> Typestore:

@@ -110,7 +110,7 @@ def _json_object(text: str) -> dict[str, Any] | None:
     """The object that `text` is in JSON."""
     try:
         content = json.loads(text)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):  # a number of ten thousand digits; ten thousand brackets
         return None
     return content if isinstance(content, dict) else None
 

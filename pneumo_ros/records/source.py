@@ -5,13 +5,12 @@ from collections.abc import Iterator
 from pathlib import Path, PurePath
 from typing import Any, Protocol
 
-import yaml
-
-from pneumo_ros.errors import DataError
+from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Block
 from pneumo_ros.records.foreign import ForeignBag
 from pneumo_ros.records.mcap_file import McapFile
+from pneumo_ros.yaml_text import load_yaml
 
 METADATA = "metadata.yaml"
 ROOT = "rosbag2_bagfile_information"
@@ -61,13 +60,14 @@ def recording_name(path: Path) -> str:
 def _information(path: Path) -> tuple[dict[str, Any] | None, list[str]]:
     """Content of the folder's metadata.yaml; None with a warning when it is missing or broken."""
     try:
-        content = yaml.safe_load((path / METADATA).read_text(encoding="utf-8"))
+        content = load_yaml((path / METADATA).read_text(encoding="utf-8"))
         information: dict[str, Any] = content[ROOT]
-        if information["relative_file_paths"]:
+        listed = information["relative_file_paths"]
+        if isinstance(listed, list) and listed and all(isinstance(name, str) for name in listed):
             return information, []
     except FileNotFoundError:
         return None, [f"{path.name} has no {METADATA}: its recorder was killed. Its files are read as they are."]
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError):
+    except (OSError, UnicodeDecodeError, UsageError, KeyError, TypeError):
         pass
     return None, [f"The {METADATA} of {path.name} is damaged. The files of the folder are read as they are."]
 

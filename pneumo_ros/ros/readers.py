@@ -2,8 +2,11 @@
 
 CDR as in OMG formal/02-06-51, section 9.3: four bytes of encapsulation, then little-endian numbers, aligned to their
 size from there; a string or sequence is its length and its elements. Any other encapsulation goes through rclpy.
+
+Anybody may publish anything: bytes that are no message of their type read as NaN, or as no joint.
 """
 
+import math
 import struct
 from typing import NamedTuple
 
@@ -26,17 +29,21 @@ class JointSample(NamedTuple):
 
 def number(data: bytes) -> float:
     """The number of a std_msgs/Float64."""
-    if data[:2] != _PLAIN:
-        return float(deserialize_message(data, Float64).data)
-    return float(_NUMBER.unpack_from(data, 4)[0])
+    try:
+        return float(_NUMBER.unpack_from(data, 4)[0] if data[:2] == _PLAIN else deserialize_message(data, Float64).data)
+    except Exception:  # of struct, or one of the middleware's own
+        return math.nan
 
 
 def pressure(data: bytes) -> float:
     """The pressure [Pa] of a sensor_msgs/FluidPressure."""
-    if data[:2] != _PLAIN:
-        return float(deserialize_message(data, FluidPressure).fluid_pressure)
-    (length,) = _COUNT.unpack_from(data, _START)
-    return float(_NUMBER.unpack_from(data, _aligned(_START + 4 + length, 8))[0])
+    try:
+        if data[:2] != _PLAIN:
+            return float(deserialize_message(data, FluidPressure).fluid_pressure)
+        (length,) = _COUNT.unpack_from(data, _START)
+        return float(_NUMBER.unpack_from(data, _aligned(_START + 4 + length, 8))[0])
+    except Exception:  # likewise
+        return math.nan
 
 
 class JointReader:
@@ -53,6 +60,13 @@ class JointReader:
 
     def read(self, data: bytes) -> JointSample | None:
         """The joint's sample of a sensor_msgs/JointState; None if it holds no position of that joint."""
+        try:
+            return self._read(data)
+        except Exception:  # no JointState at all: of struct, or one of the middleware's own
+            self._length = -1  # what was learnt from it is nothing
+            return None
+
+    def _read(self, data: bytes) -> JointSample | None:
         if data[:2] != _PLAIN:
             return self._of_message(deserialize_message(data, JointState))
         if not self._as_before(data) and not self._learn(data):
@@ -63,8 +77,11 @@ class JointReader:
         return JointSample(seconds * 1_000_000_000 + nanoseconds, position, velocity)
 
     def names(self, data: bytes) -> list[str]:
-        """Names of all joints of a message."""
-        return list(deserialize_message(data, JointState).name)
+        """Names of all joints of a message; none of what is no message."""
+        try:
+            return list(deserialize_message(data, JointState).name)
+        except Exception:  # likewise
+            return []
 
     def _as_before(self, data: bytes) -> bool:
         """Whether all lengths and strings that decide the places are those of the last message."""

@@ -47,6 +47,19 @@ def test_a_bad_row_is_named(content: str, line: str, tmp_path: Path) -> None:
         parse_drive(str(path))
 
 
+def test_times_beyond_measure_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "drive.csv").write_text("0,0\n1e308,0\n")
+    with pytest.raises(DataError, match="line 2"):
+        parse_drive(str(tmp_path / "drive.csv"))
+
+
+def test_a_long_bad_row_is_named_in_short(tmp_path: Path) -> None:
+    (tmp_path / "drive.csv").write_text(f"0,0\n{5000 * '['}\n")
+    with pytest.raises(DataError, match="line 2") as refused:
+        parse_drive(str(tmp_path / "drive.csv"))
+    assert len(str(refused.value)) < 300 + len(str(tmp_path))
+
+
 def test_a_csv_with_nothing_in_it_is_refused(tmp_path: Path) -> None:
     (tmp_path / "drive.csv").write_text("time,voltage\n")
     with pytest.raises(DataError, match="0 rows"):

@@ -45,6 +45,17 @@ def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str
     assert "--quiet" in text
 
 
+def test_what_the_system_refuses_is_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(*_: object) -> int:
+        raise PermissionError(13, "Permission denied", "runs")
+
+    monkeypatch.setattr(effects, "run", refuse)
+    assert main.main(["effects"]) == DataError.exit_code
+    assert capsys.readouterr().err == "pneumo: error: runs: Permission denied\n"
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main.main(["--version"]) == 0
     assert capsys.readouterr().out.split() == ["pneumo_ros", __version__]

@@ -50,6 +50,12 @@ def test_a_law_knows_the_machine_it_is_made_for() -> None:
         ("/**: {ros__parameters: {law: cascde}}", "did you mean cascade"),
         ("/**: {ros__parameters: {law: pid, pid: {proportionl: 1.0}}}", "did you mean proportional"),
         ("/**: {ros__parameters: {law: pid, pid: {proportional: -1.0}}}", "allowed is 0 to"),
+        ("/**: {ros__parameters: {law: [pid]}}", "unknown law '.'pid'.'"),
+        ("/**: {ros__parameters: {law: pid, pid: [1.0]}}", "section pid is .1.0.; it takes entries"),
+        ("/**: {ros__parameters: {law: pid, pid: {null: 1.0}}}", "section pid is .None"),
+        (f"/**: {{ros__parameters: {{law: pid, pid: {{proportional: 1{350 * '0'}}}}}}}", "gain proportional is 1000"),
+        ("/**: {ros__parameters: {law: pid, valve: 0.1}}", "section valve is 0.1"),
+        ("/**: {ros__parameters: {law: pid, valve: {smoothing: .nan}}}", "valve.smoothing is nan"),
     ],
 )
 def test_what_is_no_control_file_is_refused(text: str, said: str, tmp_path: Path) -> None:

@@ -119,6 +119,8 @@ def test_a_file_keeps_a_programme(tmp_path: Path) -> None:
         ("constant: 1.1", "constant: 1.1, steps: [[1.0, 1.0]]", "takes one of"),
         ("steps: [[0.5, 1.0], [1.0, -2.0]]", "steps: []", "trial 'two': steps is []"),
         ("steps: [[0.5, 1.0], [1.0, -2.0]]", "steps: [[0.0, 1.0]]", "trial 'two': steps is"),
+        ("rest: 0.5", f"rest: 1{350 * '0'}", "rest is 1000"),
+        ("[1.0, -2.0]", "[1.0, .nan]", "trial 'two': steps is"),
         ("first: 0.1, ", "", "trial 'three': sweep is"),
         ("name: two", "name: one", "trial one is listed twice"),
         ("name: two", "name: ../two", "plain file name"),

@@ -11,7 +11,14 @@ from hiding import environment_without
 import pneumo_ros
 
 PACKAGE = Path(pneumo_ros.__file__).parent
-ROOT = {"errors", "nearest", "files", "environment", "__init__"}  # beneath every room; they import each other only
+ROOT = {
+    "errors",
+    "nearest",
+    "files",
+    "environment",
+    "yaml_text",
+    "__init__",
+}  # beneath every room; they import each other only
 
 # What each room may import besides itself and the modules above
 ALLOWED = {
@@ -19,15 +26,19 @@ ALLOWED = {
     "records": set(),
     "control": set(),
     "config": set(),
+    "sweep": set(),
+    "fleet": {"sweep", "discover", "diagnose", "identify", "plant", "records", "control"},
     "identify": {"plant", "records", "control"},
     "diagnose": {"identify", "plant", "records", "control"},
     "experiment": {"identify", "plant", "records", "control"},
     "discover": {"diagnose", "identify", "plant", "records", "control"},
-    "report": {"discover", "diagnose", "identify", "plant", "records", "control"},
+    "report": {"fleet", "discover", "diagnose", "identify", "plant", "records", "control"},
     "workbench": {"report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "ros": {"discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
     "command": {
         "workbench",
+        "fleet",
+        "sweep",
         "report",
         "discover",
         "experiment",

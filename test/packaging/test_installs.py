@@ -79,6 +79,15 @@ def test_the_wheel_carries_the_whole_package_and_nothing_else(wheel: Path) -> No
     assert {name.partition("/")[0].partition("-")[0] for name in names} == {"pneumo_ros"}
 
 
+def test_the_source_archive_makes_the_same_wheel(tree: Path, wheel: Path, tmp_path: Path) -> None:
+    run(sys.executable, "setup.py", "-q", "sdist", "-d", tmp_path, folder=tree)
+    (archive,) = tmp_path.glob("*.tar.gz")
+    arguments = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", tmp_path, archive)
+    run(sys.executable, "-m", "pip", *arguments, folder=tmp_path)
+    (again,) = tmp_path.glob("*.whl")
+    assert set(zipfile.ZipFile(again).namelist()) == set(zipfile.ZipFile(wheel).namelist())
+
+
 def test_the_wheel_runs_away_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
     arguments = ("install", "--no-deps", "--no-index", "--target", tmp_path / "site", wheel)
     run(sys.executable, "-m", "pip", *arguments, folder=tmp_path)

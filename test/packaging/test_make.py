@@ -75,7 +75,7 @@ def test_make_alone_says_what_there_is() -> None:
         [make, "--no-print-directory"], cwd=ROOT, capture_output=True, text=True, env=dict(os.environ)
     )
     assert done.returncode == 0
-    for target in ("make demo", "make test", "make bench"):
+    for target in ("make demo", "make test", "make bench", "make fuzz", "make chaos", "make endurance", "make supply"):
         assert target in done.stdout
 
 

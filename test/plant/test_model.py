@@ -176,3 +176,12 @@ def test_following_does_not_let_the_measured_motion_run_on(axis: Model) -> None:
 def test_no_misspelt_keyword_is_swallowed(axis: Model, method: str) -> None:
     with pytest.raises(TypeError, match="sampletime"):
         getattr(axis, method)([0.0], axis.state(), sampletime=1.0)
+
+
+def test_outputs_take_one_voltage_for_all_and_refuse_too_few(axis: Model) -> None:
+    """The kernel once read on behind a short array: whatever lay in memory was taken for voltages."""
+    x = axis.simulate(VOLTAGE, axis.state())
+    one, all_of_them = axis.outputs(x, 2.0), axis.outputs(x, np.full(len(x), 2.0))
+    assert all(np.array_equal(one[name], all_of_them[name]) for name in one)
+    with pytest.raises(UsageError, match="2 voltages do not reach over"):
+        axis.outputs(x, [1.0, 2.0])

@@ -115,8 +115,34 @@ def test_a_full_disk_is_said_in_words(tmp_path: Path) -> None:
     os.close(full)
     for topic, _, log_time, data in interleaved(CONTRACT, 3):
         writer.write(topic, log_time, data)
-    with pytest.raises(DataError, match="No space left on device"):
+    with pytest.raises(DataError, match=r"No space left on device. The last \d+ messages are lost"):
         writer.flush()
+
+
+def test_a_full_disk_leaves_what_was_there_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system takes some of what is written, over the old end of the file, and then no more."""
+    path, real = tmp_path / "bag", os.pwrite
+    room = [1000]
+
+    def little(descriptor: int, data: bytes, position: int) -> int:
+        if len(data) > 100 and not room[0]:
+            raise OSError(28, "No space left on device")
+        if len(data) > 100:
+            data, room[0] = data[: room[0]], 0
+        return real(descriptor, data, position)
+
+    writer = BagWriter(path, topics())
+    for topic, _, log_time, data in interleaved(CONTRACT, 3):
+        writer.write(topic, log_time, data)
+    writer.flush()
+    before = next(path.glob("*.mcap")).read_bytes()
+    for topic, _, log_time, data in interleaved(CONTRACT, 40):
+        writer.write(topic, log_time + 10**9, data)
+    monkeypatch.setattr(os, "pwrite", little)
+    with pytest.raises(DataError, match="No space left"):
+        writer.flush()
+    assert next(path.glob("*.mcap")).read_bytes() == before
+    assert_same(read_topics(path), by_rosbags(path))
 
 
 def test_a_killed_writer_loses_no_more_than_a_second(tmp_path: Path) -> None:

@@ -118,7 +118,13 @@ def test_missing_metadata(tmp_path: Path, storage: str) -> None:
     assert "no metadata.yaml" in warnings[0]
 
 
-@pytest.mark.parametrize("content", ["", "rosbag2_bagfile_information:\n  version: 9\n", ":\n\t-", "\0\0\0"])
+LISTS = [f"rosbag2_bagfile_information: {{relative_file_paths: {value}}}" for value in ("a.mcap", "[[a]]", "[1]", "{}")]
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "rosbag2_bagfile_information:\n  version: 9\n", ":\n\t-", "\0\0\0", "a: 2001-99-99", "[" * 9000, *LISTS],
+)
 def test_damaged_metadata(tmp_path: Path, content: str) -> None:
     path = write_rosbags(tmp_path / "bag", MESSAGES[:600])
     (path / "metadata.yaml").write_text(content)
@@ -150,3 +156,27 @@ def test_overlapping_parts_are_merged_by_time(tmp_path: Path) -> None:
     found, _ = payloads(folder)
     assert [time - START for _, time, _ in found] == list(range(100))
     assert (read_topics(folder)["/n"].log_time - START).tolist() == list(range(100))
+
+
+def test_times_before_1970_are_times(tmp_path: Path) -> None:
+    """A recorder whose clock was not set."""
+    with BagWriter(tmp_path / "bag", [BagTopic("/n", "std_msgs/msg/Float64")]) as writer:
+        for time in (0, 1, 2):
+            writer.write("/n", time, MESSAGES[0][3])
+    file = next((tmp_path / "bag").glob("*.mcap"))
+    bag = Bag(written_with_times(file, tmp_path / "early.mcap", [-2, -1, 3]))
+    assert [message.log_time for message in bag.messages()] == [-2, -1, 3]
+    assert [message.log_time for message in bag.messages(since=0)] == [3]
+
+
+def written_with_times(source: Path, target: Path, times: list[int]) -> Path:
+    """The messages of `source` at other times, below zero as the file's unsigned numbers have it."""
+    with target.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start(profile="ros2")
+        schema = writer.register_schema(KINDS["/n"], "ros2msg", b"float64 data")
+        channel = writer.register_channel("/n", "cdr", schema)
+        for message, time in zip(Bag(source).messages(), times, strict=True):
+            writer.add_message(channel, time % 2**64, message.payload, 0)
+        writer.finish()
+    return target

@@ -14,9 +14,14 @@ POSITION_NOISE, PRESSURE_NOISE = 5e-6, 300.0  # m, Pa
 
 
 def record_campaign(
-    folder: Path, model: Model, voltages: tuple[float, ...], seconds: float, rate: float = 250.0
+    folder: Path,
+    model: Model,
+    voltages: tuple[float, ...],
+    seconds: float,
+    rate: float = 250.0,
+    start_ns: int = 1_700_000_000_000_000_000,
 ) -> list[Path]:
-    """One bag per run in `folder`, in the order of the programme."""
+    """One bag per run in `folder`, in the order of the programme, the first one recorded at `start_ns`."""
     conductor = Conductor(constant_voltage(model, voltages, seconds))
     plant = Stepper(model, model.state(), sample_time=1.0 / rate)
     rows: dict[str, list[tuple[float, ...]]] = {}
@@ -34,7 +39,7 @@ def record_campaign(
         p_a, p_b = (p + PRESSURE_NOISE * noise.standard_normal(len(p)) for p in (p_a, p_b))
         write_recording(
             folder / name, time=time - time[0], position=y, pressure_a=p_a, pressure_b=p_b, voltage=volts,
-            start_ns=1_700_000_000_000_000_000 + round(time[0] * 1e9),
+            start_ns=start_ns + round(time[0] * 1e9),
         )  # fmt: skip
         paths.append(folder / name)
     return paths

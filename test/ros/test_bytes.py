@@ -10,6 +10,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.ros import messages, readers
+from pneumo_ros.ros.experiment.take import stamp_of
 
 STAMP = 1_795_251_234_567_890_123
 
@@ -99,3 +100,31 @@ def test_nan_and_negative_zero_pass() -> None:
     assert sample is not None
     assert math.isnan(sample.position)
     assert math.copysign(1.0, sample.velocity or 1.0) == 1.0
+
+
+HEAD = b"\0\1\0\0"
+NO_MESSAGES = [b"", HEAD, HEAD + b"\xff" * 60, b"\0\0\0\0" + b"\xff" * 60, b"\7\7\7\7" + b"\0" * 60, HEAD + b"\0" * 11]
+
+
+@pytest.mark.parametrize("data", NO_MESSAGES)
+def test_bytes_that_are_no_message_are_no_number_and_no_joint(data: bytes) -> None:
+    """Anybody may publish them: a node that dies of them leaves its valve open."""
+    assert not math.isfinite(readers.number(data)) or len(data) >= 12
+    assert math.isnan(readers.pressure(data))
+    reader = readers.JointReader("piston")
+    assert reader.read(data) is None
+    assert reader.names(data) == []
+    assert stamp_of(data, "sensor_msgs/msg/JointState") == 0 or len(data) >= 12
+    good = joint_state(["piston"], [0.25], [])
+    sample = reader.read(good)
+    assert sample is not None
+    assert sample.position == 0.25
+    assert reader.read(data) is None
+    assert reader.read(good) == sample
+
+
+@pytest.mark.parametrize("length", range(4, 100, 4))
+def test_a_joint_state_cut_anywhere_is_none_or_all_there(length: int) -> None:
+    reader, good = readers.JointReader("piston"), joint_state(["a", "piston"], [0.5, 0.25], [1.0, 2.0])
+    sample = reader.read(good)
+    assert reader.read(good[:length]) in (None, sample)

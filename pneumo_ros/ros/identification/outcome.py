@@ -15,7 +15,7 @@ _EVIDENCE = ("map", "refused", "breakaways", "machine")  # much of it; it is in 
 def store(model: Model, result: Mapping[str, Any], folder: Path) -> Path:
     """Write machine file and result under the first free number; returns the machine file's path.
 
-    Raises UsageError when the folder cannot be made or written.
+    Raises UsageError when the folder cannot be made or written, DataError when the disk is full.
     """
     folder.mkdir(parents=True, exist_ok=True)
     number = 1 + max((_number(path) for path in folder.glob(f"{model.name}_*.yaml")), default=0)
@@ -24,8 +24,10 @@ def store(model: Model, result: Mapping[str, Any], folder: Path) -> Path:
         try:
             save_model(model, path, overwrite=False)
             break
-        except DataError:  # somebody else took the number
-            number += 1
+        except DataError:
+            if not path.exists():  # the disk is full
+                raise
+            number += 1  # somebody else took it
     write_whole(path.with_suffix(".json"), json.dumps(result, indent=1) + "\n")
     return path
 

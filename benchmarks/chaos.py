@@ -1,0 +1,49 @@
+"""Faults at random, in real processes: simulator, controller, recorder, identification and player.
+
+Processes are killed, stopped and doubled, messages come at 10 kHz, without numbers, too large or from another time,
+disks are full or read only, parameters are turned at random. After each fault everything must speak again, with
+numbers; valves must have closed, recordings be whole, and `kill -9` must have cost no more than a second of one.
+
+    python benchmarks/chaos.py [--faults 300] [--minutes 60] [--seed 1] [--only WORD]
+
+The seed repeats the order and the choices, not the moments. The exit code is 1 when anything broke.
+"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "test")]
+
+
+def arguments() -> argparse.Namespace:
+    """The options."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--faults", type=int, default=300, help="in all (default 300)")
+    parser.add_argument("--minutes", type=float, default=60.0, help="after which none begins (default 60)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="", metavar="WORD", help="faults whose name has this word in it")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Run the campaign, print; 1 if anything broke."""
+    import conftest  # a ROS domain of its own, before anything imports rclpy
+    from chaos.campaign import campaign, kinds
+
+    options = arguments()
+    print(f"seed {options.seed}, ROS domain {conftest.DOMAIN.number}", file=sys.stderr)
+    with tempfile.TemporaryDirectory(prefix="pneumo_ros_chaos_") as folder:
+        chosen = [name for name in kinds(Path(folder))[0] if options.only in name]
+        outcome = campaign(
+            Path(folder), options.faults, options.seed, 60.0 * options.minutes, chosen,
+            lambda text: print(text, file=sys.stderr, flush=True),
+        )  # fmt: skip
+    print(f"seed {options.seed}, {outcome.seconds:.0f} s\n{outcome.text()}")
+    return int(bool(outcome.broken))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+"""Examine recordings of many machines: what drifted, and which effect appeared when.
+
+FOLDER holds a folder for each machine, and in it recordings, a campaign for each day, or folders of recordings, a
+campaign each. Every campaign is identified, and diagnosed where it has recordings to judge by (names that begin with
+hold). Then parameters are compared over time, with their intervals, and effects by when they were found first. A
+machine.yaml in the folder of a machine is its model, else --model.
+
+Campaigns are examined side by side, on processes or a Dask cluster. With --results they are kept as they come: the same
+command goes on where it was interrupted, and examines only what is new the next night.
+"""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.console import Console, plain
+from pneumo_ros.command.fleet_text import text
+from pneumo_ros.command.reporting import add_report, prepare_report
+
+if TYPE_CHECKING:
+    from pneumo_ros.fleet.folder import Campaign
+    from pneumo_ros.sweep import Journal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """FOLDER, how to compute, and the common options."""
+    from pneumo_ros.sweep.executors import FORMS
+
+    parser.add_argument("folder", metavar="FOLDER", help="with a folder for each machine")
+    parser.add_argument("--executor", metavar="NAME", default="processes", help=f"{FORMS} (default: processes)")
+    parser.add_argument("--results", metavar="FILE", help="keep what is computed, and do not compute it again")
+    parser.add_argument("--identify-only", action="store_true", help="look for no effects: much faster")
+    add_model(parser)
+    add_report(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Find, examine, compare, print; 1 when a campaign could not be examined."""
+    from contextlib import ExitStack
+
+    from pneumo_ros.fleet.folder import campaigns
+    from pneumo_ros.fleet.history import history
+    from pneumo_ros.report.fleet import fleet_report
+
+    found, passed = campaigns(options.folder)
+    for reason in passed.values():
+        console.note(f"Passed over: {reason}")
+    options.bags = [str(path) for campaign in found for path in campaign.paths]
+    report = prepare_report(options)
+    chosen_model(options)  # what is wrong with it is told before anything is computed
+    with ExitStack() as stack:
+        journal = stack.enter_context(_journal(options)) if options.results else None
+        examined = _examined(found, options, console, journal)
+    machines = history(examined)
+    result: dict[str, Any] = plain(
+        {"schema_version": 1, "folder": options.folder, "machines": machines, "passed_over": passed}
+        | {"provenance": report.origin()}
+    )
+    console.say(text(result))
+    console.json(result)
+    report.publish(console, lambda origin: fleet_report(result, origin))
+    return int(any(one["problem"] for one in examined))
+
+
+def _examined(
+    found: "list[Campaign]", options: argparse.Namespace, console: Console, journal: "Journal | None"
+) -> list[dict[str, Any]]:
+    """Every campaign with what was found, in the order of machines and time."""
+    from pneumo_ros.fleet.examine import examine
+    from pneumo_ros.sweep import open_pool, sweep
+
+    effects = [str(Path(path).resolve()) for path in options.effects]
+    by_key = {campaign.fingerprint: campaign for campaign in found}
+    jobs = {key: (_paths(c), _model(c, options), effects, not options.identify_only) for key, c in by_key.items()}
+    results = {}
+    with open_pool(options.executor) as pool, console.progress("Examining") as progress:
+        for done in sweep(examine, jobs, pool, journal):
+            results[done.key] = done
+            if done.problem:
+                console.note(f"{by_key[done.key].key} is left out: {done.problem}")
+            progress(len(results) / len(jobs))
+    empty: dict[str, Any] = {"parameters": {}, "added": [], "verdict": None, "undetermined": {}, "passed_over": {}}
+    return [
+        {"machine": c.machine, "campaign": c.name, "date": c.date, "problem": results[key].problem}
+        | (results[key].result or empty)
+        for key, c in by_key.items()
+    ]
+
+
+def _paths(campaign: "Campaign") -> list[str]:
+    return [str(path.resolve()) for path in campaign.paths]
+
+
+def _model(campaign: "Campaign", options: argparse.Namespace) -> str:
+    if campaign.machine_file is not None:
+        return str(campaign.machine_file.resolve())
+    own = Path(options.model)
+    return str(own.resolve()) if own.is_file() else str(options.model)
+
+
+def _journal(options: argparse.Namespace) -> "Journal":
+    """The file of results, for this model, these effects, and this version of the package."""
+    from pneumo_ros import __version__
+    from pneumo_ros.plant.machine_file import read_machine
+    from pneumo_ros.sweep import Journal
+
+    texts = [Path(path).read_text(encoding="utf-8", errors="replace") for path in options.effects]
+    purpose = {"version": __version__, "model": read_machine(options.model)[1], "effects": texts}
+    return Journal(options.results, purpose | {"identify_only": options.identify_only})
