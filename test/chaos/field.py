@@ -20,6 +20,7 @@ PLACE = "chaos"
 MARK = "chaos"  # frame of messages that a fault sends: they are no state of the simulator
 RATE = 200.0  # Hz of the simulator
 ANSWER = 60.0  # s within which every node speaks again: no measure of speed, the machine may stand still for a while
+BEGIN = 240.0  # s until the first state: all of them start at once
 OPTIONS: dict[str, dict[str, object]] = {
     "simulator": {"publish_rate": RATE},
     "controller": {"reference.shape": "sine", "reference.amplitude": 0.3, "reference.frequency": 0.2},
@@ -53,6 +54,7 @@ class Field:
             self.start(name)
         self.probe = AxisProbe(PLACE)
         stack.callback(self.probe.close)
+        self.until(lambda: self.probe.heard["joint_states"], "no simulator began", BEGIN)
         self.answers()
 
     def start(self, name: str, **more: object) -> Running:
