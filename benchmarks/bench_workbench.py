@@ -25,12 +25,13 @@ from report.browser import chromium
 SAMPLES = 600_000
 TARGETS = {"start": 3.0, "idle": 150.0, "zoom": 0.3, "slider": 0.2}  # s, MB, s, s
 REPEATS = 9
-# Resolves with the milliseconds until the plot `place` has been drawn once more.
-WATCH = """(place) => new Promise((done) => {
+# Resolves with the milliseconds from an event until the plot `place` has been drawn once more.
+WATCH = """([place, event]) => new Promise((done) => {
   const drawn = () => document.querySelector(place).dataset.drawn;
   const before = drawn();
-  const began = performance.now();
-  const again = () => (drawn() !== before ? done(performance.now() - began) : setTimeout(again, 2));
+  let began = null;
+  document.addEventListener(event, () => { began = performance.now(); }, { once: true, capture: true });
+  const again = () => (drawn() !== before && began !== null ? done(performance.now() - began) : setTimeout(again, 2));
   again();
 })"""
 
@@ -114,7 +115,7 @@ def zoomed(page: Any, k: int) -> float:
     page.mouse.move(begin, height)
     page.mouse.down()
     page.mouse.move(begin + 0.3 * box["width"], height, steps=5)
-    page.evaluate(f"() => {{ window.seen = ({WATCH})('#signals'); }}")
+    page.evaluate(f"() => {{ window.seen = ({WATCH})(['#signals', 'mouseup']); }}")
     page.mouse.up()
     seconds = 1e-3 * float(page.evaluate("() => window.seen"))
     page.wait_for_timeout(800)
@@ -133,7 +134,7 @@ def slid(page: Any) -> list[float]:
     page.wait_for_timeout(4000)
     found = []
     for _ in range(REPEATS):
-        page.evaluate(f"() => {{ window.seen = ({WATCH})('#response'); }}")
+        page.evaluate(f"() => {{ window.seen = ({WATCH})(['#response', 'keydown']); }}")
         page.keyboard.press("ArrowRight")
         found.append(1e-3 * float(page.evaluate("() => window.seen")))
         page.wait_for_timeout(700)

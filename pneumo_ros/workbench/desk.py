@@ -147,7 +147,7 @@ class Desk:
                 raise UsageError(f"{self.job.title} goes on; cancel it first")
             self._jobs += 1
             plan, before = make(self._jobs), self.variant
-            self.job = Job(plan.title, plan.lines, self.folder, lambda: self._done(plan, before))
+            self.job = Job(plan.title, plan.lines, self.folder, lambda: self._done(plan, before), self.changed)
             self.changed()
 
     def _done(self, plan: Plan, before: Variant) -> None:
@@ -178,7 +178,7 @@ class Desk:
             self.message = str(problem)
 
     def changed(self) -> None:
-        """The page has something new to show."""
+        """The page has something new to show; takes no lock: jobs tell their end by it."""
         self.revision, self.message = self.revision + 1, ""
 
 

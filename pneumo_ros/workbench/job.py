@@ -41,11 +41,16 @@ class Status:
 
 
 class Job:
-    """Verbs in `folder`, one after another; `done` is called in the job's own thread when all have ended well."""
+    """Verbs in `folder`, one after another.
 
-    def __init__(self, title: str, lines: Sequence[Line], folder: Path, done: Callable[[], None]) -> None:
+    `done` is called in the job's own thread when all have ended well, `ended` after the end, whatever brought it.
+    """
+
+    def __init__(
+        self, title: str, lines: Sequence[Line], folder: Path, done: Callable[[], None], ended: Callable[[], None]
+    ) -> None:
         self.title, self.lines, self.folder = title, lines, folder
-        self._done, self._lock = done, threading.Lock()
+        self._done, self._ended, self._lock = done, ended, threading.Lock()
         self._state: State = "running"
         self._share, self._doing, self._message = 0.0, "starting", ""
         self._start, self._end = time.monotonic(), 0.0
@@ -125,6 +130,7 @@ class Job:
     def _finish(self, state: State, message: str) -> None:
         self._state, self._message, self._end = state, message, time.monotonic()
         self._share = 1.0 if state == "done" else self._share
+        self._ended()
 
 
 def _start(arguments: Sequence[str], folder: Path) -> "subprocess.Popen[str]":

@@ -41,7 +41,7 @@ def ended(tab: Tab, served: Served) -> None:
 def test_a_reload_finds_the_job_again_and_cancel_ends_it(tab: Tab, served: Served) -> None:
     tab.tick("payload mass")
     begun(tab, served)
-    assert tab.page.get_by_role("button", name="Refit").is_disabled()
+    tab.page.locator("#refit[disabled]").wait_for()
     tab.page.reload()
     tab.see("#job-says", "Diagnosing")
     assert tab.page.get_by_label("payload mass", exact=True).is_checked()
