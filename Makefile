@@ -61,7 +61,7 @@ test: $(READY) | .cache/tmp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadgroup $(PYTEST)
+	$(BIN)/python -m pytest $(PYTEST)
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done

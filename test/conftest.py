@@ -32,20 +32,3 @@ def browser() -> Iterator[Any]:
 
     with chromium() as running:
         yield running
-
-
-# Of tests that run side by side, those with nodes or browsers in real time follow one another: they come first, in one
-# process, and what only computes goes to the other, file by file.
-REAL_TIME = ("ros", "workbench")
-
-
-@pytest.hookimpl(hookwrapper=True)  # before xdist itself, which reads the groups first of all
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
-    """Say what belongs together, where tests run side by side."""
-    if config.pluginmanager.hasplugin("xdist"):
-        folders = {item: item.path.relative_to(TEST).parts[0] for item in items}
-        items.sort(key=lambda item: folders[item] not in REAL_TIME)
-        for item in items:
-            group = "real time" if folders[item] in REAL_TIME else str(item.path)
-            item.add_marker(pytest.mark.xdist_group(group))
-    yield
