@@ -1,9 +1,10 @@
 """Examine recordings of many machines: what drifted, and which effect appeared when.
 
 FOLDER holds a folder for each machine, and in it recordings, a campaign for each day, or folders of recordings, a
-campaign each. Every campaign is identified, and diagnosed where it has recordings to judge by (names that begin with
-hold). Then parameters are compared over time, with their intervals, and effects by when they were found first. A
-machine.yaml in the folder of a machine is its model, else --model.
+campaign each. A campaign with recordings to judge by (names that begin with hold) is diagnosed, and its parameters are
+refitted with the effects that were found; another one is identified from constant voltages. Then parameters are
+compared over time, with their intervals, and effects by when they were found first. A machine.yaml in the folder of a
+machine is its model, else --model.
 
 Campaigns are examined side by side, on processes or a Dask cluster. With --results they are kept as they come: the same
 command goes on where it was interrupted, and examines only what is new the next night.

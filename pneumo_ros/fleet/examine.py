@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pneumo_ros.discover.diagnosis import diagnose
+from pneumo_ros.discover.adding import estimates_along
+from pneumo_ros.discover.diagnosis import conclude
+from pneumo_ros.discover.search import Search
 from pneumo_ros.errors import DataError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.identify.plausible import check_run
@@ -15,30 +17,21 @@ from pneumo_ros.records import read_recording
 HELD = "hold"  # recordings of such names are not fitted: they judge
 NORMAL = 1.96  # deviations of a 95 % interval
 
-Interval = dict[str, Any]  # value, low, high, unit
-
 
 def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing: bool) -> dict[str, Any]:
     """What the recordings at `paths` say of their machine, as JSON; `model` and `effects` are files or a shipped name.
 
-    parameters: dotted name -> value and 95 % interval, of identification and of added effects. added: effects that
-    held-out recordings support, with those that explain as much. verdict is null without held-out recordings, or when
-    they are not `diagnosing`. Raises DataError when no recording can be used, UsageError as `load_model`.
+    parameters: dotted name -> value and 95 % interval. added: effects that held-out recordings support, with those that
+    explain as much. Where there are held-out recordings and `diagnosing`, parameters are those of the model with what
+    was added, for a model that lacks an effect puts it down to its other parameters; else those of an identification,
+    and verdict is null. Raises DataError when no recording can be used, UsageError as `load_model`.
     """
     machine = load_model(model, tuple(effects))
     runs, passed = _read(machine, paths)
     held = [run for run in runs if run.name.startswith(HELD)]
-    fitted = [run for run in runs if run not in held] or held
+    fitted = [run for run in runs if run not in held]
     found: dict[str, Any] = {"parameters": {}, "added": [], "verdict": None, "undetermined": {}, "passed_over": passed}
-    try:
-        known = identify(machine, fitted)
-        found["parameters"] = {name: one for name in known.parameters if (one := _interval(known, name))}
-        found["undetermined"] = dict(known.undetermined)
-    except DataError as error:  # no constant voltages: a diagnosis may do without
-        found["undetermined"] = {"all": str(error)}
-    if diagnosing and held and fitted is not held:
-        _add_diagnosis(found, machine, fitted, held)
-    return found
+    return found | (_diagnosis if diagnosing and held and fitted else _identification)(machine, fitted or held, held)
 
 
 def _read(machine: Model, paths: Sequence[str]) -> tuple[list[Run], dict[str, str]]:
@@ -56,23 +49,36 @@ def _read(machine: Model, paths: Sequence[str]) -> tuple[list[Run], dict[str, st
     return runs, passed
 
 
-def _interval(known: Any, name: str) -> Interval | None:
-    one = known.parameters[name]
-    if one.interval is None:
-        return None
-    low, high = map(float, one.interval)
-    return {"value": float(one.value), "low": low, "high": high, "unit": one.unit}
+def _identification(machine: Model, runs: list[Run], held: list[Run]) -> dict[str, Any]:
+    """Parameters from constant voltages, of all recordings."""
+    try:
+        known = identify(machine, [*runs, *(run for run in held if run not in runs)])
+    except DataError as error:  # there are none: that is no reason to leave the campaign out
+        return {"undetermined": {"all": str(error)}}
+    parameters = {}
+    for name, one in known.parameters.items():
+        if one.interval is not None:
+            low, high = map(float, one.interval)
+            parameters[name] = {"value": float(one.value), "low": low, "high": high, "unit": one.unit}
+    return {"parameters": parameters, "undetermined": dict(known.undetermined)}
 
 
-def _add_diagnosis(found: dict[str, Any], machine: Model, fitted: list[Run], held: list[Run]) -> None:
-    outcome = diagnose(machine, fitted, held)
-    found["verdict"] = outcome.verdict
+def _diagnosis(machine: Model, fitted: list[Run], held: list[Run]) -> dict[str, Any]:
+    """Effects that the machine lacks, and all parameters refitted with them."""
+    search = Search(machine, fitted, held)
+    course = search.run()
+    outcome = conclude(search, course, lambda share, text: None)
+    parameters = {
+        name: {"value": one.value, "low": one.low, "high": one.high, "unit": course.model.specification(name).unit}
+        for name, one in estimates_along(search.fitter, course.model).items()
+        if one.determined
+    }
     for one in outcome.added:
-        found["added"].append({"effect": one.effect, "rivals": list(one.indistinguishable_from)})
         for key, value in one.parameters.items():
             half = NORMAL * float(value.std)
             if half < float("inf"):
                 middle = float(value.value)
-                found["parameters"][f"{one.effect}.{key}"] = {
-                    "value": middle, "low": middle - half, "high": middle + half, "unit": value.unit,
-                }  # fmt: skip
+                found = {"value": middle, "low": middle - half, "high": middle + half, "unit": value.unit}
+                parameters.setdefault(f"{one.effect}.{key}", found)
+    added = [{"effect": one.effect, "rivals": list(one.indistinguishable_from)} for one in outcome.added]
+    return {"parameters": parameters, "added": added, "verdict": outcome.verdict}
