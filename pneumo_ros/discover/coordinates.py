@@ -47,6 +47,11 @@ class Coordinate:
         return self.logarithmic and not self.is_size and self.unit in ("Hz", "rad/s")
 
     @property
+    def share(self) -> bool:
+        """Whether a fading parameter fades itself, as a share does; of a frequency it is the inverse."""
+        return self.unit == "1"
+
+    @property
     def prior(self) -> float:
         """Standard deviation of u before anything was measured."""
         return _NARROW if self.logarithmic else self.wide
@@ -71,14 +76,11 @@ class Coordinate:
         return (value - (self.neutral or 0.0)) / self.scale
 
     def size(self, u: float) -> float:
-        """How much of an effect that is, in usual ones: 0 at neutral, 1 at the usual value.
-
-        A share fades itself; of a frequency it is the inverse that does.
-        """
+        """How much of an effect that is, in usual ones: 0 at neutral, 1 at the usual value."""
         if not self.logarithmic or self.neutral is None:
             return u
         value, end, usual = self.value(u), self.neutral, self.typical
-        if self.unit == "1":
+        if self.share:
             return (end - value) / (end - usual)
         return (1.0 / value - 1.0 / end) / (1.0 / usual - 1.0 / end)
 

@@ -126,14 +126,11 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
 
 
 def _distance(c: Coordinate, u: float) -> float:
-    """How far from neutral, in u: of a fading one relative to its value, in what residuals are linear in.
-
-    A share fades itself; of a frequency it is the inverse that does.
-    """
+    """How far from neutral, in u: of a fading one relative to its value, in what residuals are linear in."""
     if c.logarithmic:
         assert c.neutral is not None
         left = c.value(u) / c.neutral
-        return 1.0 / left - 1.0 if c.unit == "1" else 1.0 - left
+        return 1.0 / left - 1.0 if c.share else 1.0 - left
     return u
 
 
