@@ -14,8 +14,10 @@ from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.sensors import shifted, taken_back
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.compose import SENSED
+from pneumo_ros.plant.effect import Effect
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
@@ -66,20 +68,36 @@ def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple
     the sensors do: x = measured - (observed(x) - x), twice.
     """
     corrects = sensing(model, parameters)
-    for own, shared in ((np.flatnonzero(~corrects), True), (np.flatnonzero(corrects), False)):
+    for own, drive in ((np.flatnonzero(~corrects), _as_measured), (np.flatnonzero(corrects), _corrected)):
         for rows in (own[k : k + BLOCK] for k in range(0, len(own), BLOCK)):
-            states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows])
-            if not shared:
-                states, mean = _corrected(model, frame, parameters[rows], states, mean)
+            states, mean = drive(model, frame, parameters[rows])
             for k, x, m in zip(rows, states, mean, strict=True):
                 yield int(k), x, centred(m)
 
 
-def _corrected(model: Model, frame: Frame, parameters: Array, states: Array, mean: Array) -> tuple[Array, Array]:
-    """Lanes driven anew along the measured states less what sensors do, by a fixed point of two steps at most.
+def _as_measured(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array]:
+    return _drive_lanes(model, frame.run, frame.states, parameters)
 
-    Each lane stops by itself: what it gives does not depend on those beside it.
+
+def _corrected(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array]:
+    """Lanes driven along the measured states less what sensors do: those with the same sensors along the same."""
+    first, group = alike_sensors(model, parameters)
+    given, own_states, own_mean = _without_sensors(model, frame, parameters[first])
+    states, mean = own_states[group], own_mean[group]
+    for k, lane in enumerate(first):
+        others = np.setdiff1d(np.flatnonzero(group == k), lane)
+        if len(others):
+            states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others])
+    return states, mean
+
+
+def _without_sensors(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array, Array]:
+    """Frame states without what sensors do (lanes, n, 2 or 4), and the lanes driven along them.
+
+    By a fixed point of two steps at most. Each lane stops by itself: what it gives does not depend on those beside it.
     """
+    states, mean = _as_measured(model, frame, parameters)
+    given = np.repeat(frame.states[None], len(states), axis=0)
     moving, before = np.arange(len(states)), np.zeros((len(states), 1, 1))
     for _ in range(2):
         shift = taken_back(model, states[moving], parameters[moving], frame.run)
@@ -87,9 +105,9 @@ def _corrected(model: Model, frame: Frame, parameters: Array, states: Array, mea
         moving, before = moving[still], shift[still]
         if not len(moving):
             break
-        given = np.stack([shifted(frame.states, own, frame.run.sample_time) for own in before])
-        states[moving], mean[moving] = _drive_lanes(model, frame.run, given, parameters[moving])
-    return states, mean
+        given[moving] = [shifted(frame.states, own, frame.run.sample_time) for own in before]
+        states[moving], mean[moving] = _drive_lanes(model, frame.run, given[moving], parameters[moving])
+    return given, states, mean
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array) -> tuple[Array, Array]:
@@ -112,13 +130,33 @@ def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Ar
     return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
 
 
+def _sensors(model: Model) -> list[type[Effect]]:
+    """The effects of the model by which sensors show something else than a state."""
+    return [e for e in model.composition.effects if any(s in SENSED for f in e.functions.values() for s in f.writes)]
+
+
+def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
+    """Parameter vectors (variants, parameters) in groups whose sensors do the same: the first of each, and the group.
+
+    Sensors that read more than the frame's states and what is their own may do something else in every lane.
+    """
+    frame = {"y", "v", "p_a", "p_b", *SENSED}
+    columns: list[int] = []
+    for effect in _sensors(model):
+        reads = {name for function in effect.functions.values() for name in function.reads}
+        if not reads <= frame | set(effect.states) | set(effect.parameters):
+            return np.arange(len(parameters)), np.arange(len(parameters))
+        columns += [k for k, name in enumerate(model.parameters) if name.partition(".")[0] == effect.name]
+    _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
+    return first, np.ravel(group)
+
+
 def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
     """Which parameter vectors (variants, parameters) make any sensor of the model show something else than a state."""
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
-    for effect in model.composition.effects:
-        if any(signal in SENSED for function in effect.functions.values() for signal in function.writes):
-            fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
-            acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
-            found |= np.any(acts, axis=0) if acts else True
+    for effect in _sensors(model):
+        fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
+        acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
+        found |= np.any(acts, axis=0) if acts else True
     return found

@@ -17,7 +17,7 @@ from pneumo_ros.discover.hypothesis import (
     wald,
     weights,
 )
-from pneumo_ros.discover.measures import acting, advantage, explained, force, gains
+from pneumo_ros.discover.measures import acting, advantage, explained, force, gains, usual_gains
 from pneumo_ros.discover.trial import T_LEAST, Trial
 from pneumo_ros.plant import Model
 
@@ -51,6 +51,7 @@ def put_on_trial(
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
                 local=max(gains(held.evidence, held.residual, r, there).values(), default=0.0),
+                usual=usual_gains(held.evidence, held.residual, r),
                 z=advantage(held.evidence, held.residual, r)[1],
                 size=magnitude(h.coordinates, h.u),
                 stable=stable(base, h),

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
+from pneumo_ros.discover.freedom import Conditions, freed
 from pneumo_ros.discover.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -40,6 +41,7 @@ class Fitter:
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train, self.held = Evidence(start, train), Evidence(start, held)
+        self.usual = Conditions.of(self.train)
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
 
     def known(self, model: Model) -> Known:
@@ -67,8 +69,10 @@ class Fitter:
         return fit_base(self.train, model, self.known(model), iterations)
 
     def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
-        """The model on training and held-out evidence."""
-        return self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
+        """The model on training and held-out evidence, the laws of what was added free in shape."""
+        train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
+        added = [name for name in model.effects if name not in self.start.effects]
+        return freed(train, added, self.usual), freed(held, added, self.usual)
 
     def _fit(self, model: Model) -> BaseFit:
         """The model on training evidence."""
@@ -88,11 +92,12 @@ class Fitter:
     def extended(self, model: Model, h: Hypothesis) -> Model:
         """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
         known, moved = self.known(model), {}
-        for n, shift, p in zip(known.names, h.shift, known.prior, strict=True):
+        for n, shift, p in zip(known.names, h.shift[: len(known.names)], known.prior, strict=True):
             s = model.specification(n)
             moved[n] = min(max(model[n] + shift * p, s.low), s.high)
         moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
-        return model.with_parameters(moved).with_effects([*model.effects, h.name], h.values)
+        values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
+        return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)
 
 
 def _coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:

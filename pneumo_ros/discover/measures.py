@@ -13,6 +13,8 @@ Rows = NDArray[np.bool_]
 
 MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
 ACTS, FEWEST = 0.25, 30  # noise deviations that an effect changes a residual by where it acts, and windows that ask for
+FEW = {"breakaway": 8}  # where it is not that: windows overlap, breakaways do not
+WILD = 3.0  # usual sizes: beyond, a residual says no more against an effect
 NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
 
@@ -36,12 +38,12 @@ def force(evidence: Evidence, before: Array, after: Array) -> float:
 def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) -> dict[str, float]:
     """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's.
 
-    Of all windows, or of those in `rows` (residuals,), whose families have thirty of them.
+    Of all windows, or of those in `rows` (residuals,), whose families have thirty of them, or eight breakaways.
     """
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
         own = evidence.family == k if rows is None else rows & (evidence.family == k)
-        if own.sum() >= (1 if rows is None else FEWEST):
+        if own.sum() >= (1 if rows is None else FEW.get(name, FEWEST)):
             scale = max(robust_scale(np.abs(residual[own])), FLOOR.get(name, 1.0))
             found.setdefault(equation_of(name), []).append(scale**2)
     return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
@@ -51,6 +53,17 @@ def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = N
     """By equation, the share of the mean square residual that `after` lacks against `before`."""
     first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
     return {name: 1.0 - second[name] / first[name] for name in first}
+
+
+def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
+    """The same of what is usual: one wild breakaway of twenty says nothing against what the others bear out."""
+    most = np.ones(len(evidence.names))
+    for k in range(len(most)):
+        own = evidence.family == k
+        if own.any():
+            most[k] = WILD * max(1.4826 * float(np.median(np.abs(before[own]))), 1.0)
+    limit = most[evidence.family]
+    return gains(evidence, np.clip(before, -limit, limit), np.clip(after, -limit, limit))
 
 
 def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:

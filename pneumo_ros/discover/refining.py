@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import at_best, relief_of
-from pneumo_ros.discover.coordinates import Coordinate
 from pneumo_ros.discover.hypothesis import (
     PROBE,
     BaseFit,
@@ -16,9 +15,9 @@ from pneumo_ros.discover.hypothesis import (
     family_scales,
     solve,
     vectors,
-    wald,
     weights,
 )  # fmt: skip
+from pneumo_ros.discover.significance import significance
 
 Array = NDArray[np.float64]
 
@@ -34,20 +33,22 @@ def refine(
     """
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
     trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
-    moving = list(range(len(best)))
+    moving, known = list(range(len(best))), dict[int, Array]()  # slopes of profiles, which hardly change
     for _k in range(iterations):
         variants: list[dict[str, float]] = []
         spans = {}
         for i in moving:
+            probes = [] if i in known else _probes(best[i], trial[i])
             spans[i] = len(variants)
-            variants += [_values(best[i], trial[i]), *(_values(best[i], v) for v in _probes(best[i], trial[i]))]
+            variants += [_values(best[i], v) for v in (trial[i], *probes)]
         if not moving:
             break
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
         for i in tuple(moving):
             h, u, at = best[i], trial[i], spans[i]
-            moved = np.array([v[j] - u[j] for j, v in enumerate(_probes(h, u))])
-            C = ((residual[at + 1 : at + 1 + len(u)] - residual[at]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T
+            C = known[i] if i in known else _slopes(h, u, residual[at : at + 1 + len(u)])
+            if _is_profile(h):
+                known[i] = C
             tried = _judge(base, h, u, residual[at], C)
             if tried.likelihood > h.likelihood:
                 best[i], trial[i] = tried, _next(base, tried, C, residual[at])
@@ -56,6 +57,16 @@ def refine(
             if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
                 moving.remove(i)
     return best
+
+
+def _is_profile(h: Hypothesis) -> bool:
+    return len(h.u) > FEW and all(c.is_size and not c.logarithmic for c in h.coordinates)
+
+
+def _slopes(h: Hypothesis, u: Array, residual: Array) -> Array:
+    """Derivatives (residuals, coordinates) from the residuals at u and at each of its probes."""
+    moved = np.array([v[j] - u[j] for j, v in enumerate(_probes(h, u))])
+    return np.asarray(((residual[1:] - residual[0]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T)
 
 
 def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
@@ -116,22 +127,11 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     A = K * w[:, None]
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))
     cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
-    sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
-    distance = np.array([_distance(h.coordinates[j], u[j]) for j in sizes])
-    t = wald(distance, cov[np.ix_(sizes, sizes)])
+    t = significance(base, h.coordinates, u, A, w * after, ridge)
     relief = relief_of(base, shift)
     return replace(
         h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C, relief=relief
     )
-
-
-def _distance(c: Coordinate, u: float) -> float:
-    """How far from neutral, in u: of a fading one relative to its value, in what residuals are linear in."""
-    if c.logarithmic:
-        assert c.neutral is not None
-        left = c.value(u) / c.neutral
-        return 1.0 / left - 1.0 if c.share else 1.0 - left
-    return u
 
 
 def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
+IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
 TINY = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
 
 
@@ -79,7 +80,16 @@ def _one_size(effect: tuple[Coordinate, ...]) -> bool:
 def _linear(
     base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, sizes: list[int], C: Array
 ) -> Hypothesis:
-    """Linear fit of the sizes of one candidate beside the base parameters."""
+    """Linear fit of the sizes of one candidate beside the base parameters.
+
+    Sizes that change nothing here, as of a profile where no recording goes, stay neutral.
+    """
+    idle = [k for k, change in zip(sizes, C.T, strict=True) if np.max(np.abs(change)) < IDLE]
+    if 0 < len(idle) < len(sizes):
+        kept = [k for k in range(len(effect)) if k not in idle]
+        C = C[:, [k not in idle for k in sizes]]
+        sizes = [kept.index(k) for k in sizes if k not in idle]
+        effect, u = tuple(effect[k] for k in kept), u[kept]
     K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
     ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
     offset = np.concatenate([base.offset, np.zeros(len(sizes))])

@@ -31,7 +31,6 @@ Progress = Callable[[float, str], None]
 
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
-EXPLAINED = 0.8  # share of what noise does not explain in an equation
 MOST = 4  # effects added
 VANISHED = "nothing of it is left beside what was added since"
 
@@ -100,7 +99,7 @@ class Search:
 
         While something else is missing, predictions over a second may hang on that alone.
         """
-        return trial.absorbed or trial.share >= EXPLAINED
+        return trial.absorbed or trial.clear
 
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""

@@ -19,6 +19,7 @@ SPOILED = 0.5  # of its best gain: by no more may another equation get worse, wh
 REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a quarter of that, still counts
+MOSTLY = 0.6  # of an equation's mean square, noise and all, on held-out runs
 PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
 SLOW = 10.0
 
@@ -37,6 +38,7 @@ class Trial:
     first: bool  # whether nothing was added before
     decoy: float  # the largest t that a copy of its trace shifted in time reaches
     score: float  # log likelihood over the base, training and held-out runs together
+    usual: dict[str, float] = field(default_factory=dict)  # as `gain`, single wild residuals left out
     local: float = -np.inf  # the largest gain of an equation where the effect acts in it
     force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
@@ -50,6 +52,11 @@ class Trial:
         return self.hypothesis.name
 
     @property
+    def clear(self) -> bool:
+        """Whether it explains nearly all of what noise does not in an equation, or removes most of what is there."""
+        return self.share >= PLAIN or max(self.gain.values(), default=0.0) >= MOSTLY
+
+    @property
     def slowness(self) -> float:
         """Largest of its fading time constants in usual ones: unlike forces, times do not grow with a machine."""
         h = self.hypothesis
@@ -58,9 +65,9 @@ class Trial:
 
     @property
     def absorbed(self) -> bool:
-        """Whether base parameters stand in for it: the data cannot tell, but what is known of those parameters can."""
+        """Whether base parameters stand in for it: the data do not say, but what is known of those parameters does."""
         h = self.hypothesis
-        indifferent = all(abs(gain) < GAIN_LEAST for gain in self.gain.values())
+        indifferent = all(gain > -GAIN_LEAST for gain in self.gain.values())
         return indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
 
     def _data_objections(self) -> list[str]:
@@ -74,9 +81,10 @@ class Trial:
             found.append(f"removes {100.0 * most:.1f} % on held-out runs")
         elif self.z < Z_LEAST:
             found.append("its gain on held-out runs is within their scatter")
-        worst = min(self.gain, key=lambda name: self.gain[name])
-        if self.gain[worst] < -SPOILED * max(most, GAIN_LEAST):
-            found.append(f"makes {worst} {-100.0 * self.gain[worst]:.0f} % worse on held-out runs")
+        change = {name: max(gain, self.usual.get(name, gain)) for name, gain in self.gain.items()}
+        worst = min(change, key=lambda name: change[name])
+        if change[worst] < -SPOILED * max(most, GAIN_LEAST):
+            found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")
         if self.rest < REST_LEAST:
             found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) != "momentum")

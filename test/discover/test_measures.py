@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.measures import FEWEST, acting, explained, gains
+from pneumo_ros.discover.measures import FEWEST, acting, explained, gains, usual_gains
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
 NOISE = np.random.default_rng(0).normal(size=N)
@@ -39,3 +39,19 @@ def test_a_few_windows_say_nothing() -> None:
     before = NOISE + effect(FEWEST - 1)
     assert gains(EVIDENCE, before, NOISE, acting(before, NOISE)) == {}
     assert explained(EVIDENCE, before, NOISE, acting(before, NOISE)) == 0.0
+
+
+def test_a_dozen_breakaways_do() -> None:
+    """They do not overlap as windows do."""
+    slips = cast(Evidence, SimpleNamespace(names=("breakaway",), family=np.zeros(12, dtype=np.int64)))
+    after = np.random.default_rng(1).normal(0.0, 0.7, 12)
+    assert explained(slips, after + 3.0, after, np.ones(12, dtype=bool)) > 0.8
+
+
+def test_one_wild_breakaway_says_nothing_against_the_others() -> None:
+    slips = cast(Evidence, SimpleNamespace(names=("breakaway",), family=np.zeros(20, dtype=np.int64)))
+    before = np.append(np.linspace(-0.9, 0.9, 19), -4.0)
+    after = np.append(before[:-1], -7.0)
+    assert gains(slips, before, after)["breakaway"] < -1.0
+    assert usual_gains(slips, before, after)["breakaway"] > -0.1
+    assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them do
