@@ -18,7 +18,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
-MATERIAL_FORCE = 0.01  # of the driving force: less is texture that no model has
+MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
 REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 
 

@@ -20,6 +20,7 @@ from pneumo_ros.workbench import (
     signals_panel,
     sliders_panel,
 )  # fmt: skip
+from pneumo_ros.workbench.answers import answer_in_words
 from pneumo_ros.workbench.data import answer_plots
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
@@ -58,6 +59,7 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     panels.show([Output("machine", "children")], [revision()], _machine)
     app.clientside_callback(ClientsideFunction("bench", "tab"), Output("tab-shown", "data"), Input("tab", "value"))
     server.add_url_rule("/report/<name>", "report", _report_file)
+    answer_in_words(server)
     accept_uploads(server, desks.uploads)
     answer_plots(server, desks)
     save_panel.serve_files(server, desks)

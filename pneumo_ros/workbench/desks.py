@@ -43,9 +43,9 @@ class Desks:
                 self._desks.pop(one).close()
         return name
 
-    def of(self, pathname: str | None) -> Desk:
+    def of(self, pathname: object) -> Desk:
         """The desk at /b/IDENTIFIER; KeyError when there is none."""
-        match = re.fullmatch(r"/b/([0-9a-f]{12})", pathname or "")
+        match = re.fullmatch(r"/b/([0-9a-f]{12})", pathname if isinstance(pathname, str) else "")
         with self._lock:
             desk = self._desks.pop(match[1] if match else "")
             self._desks[match[1] if match else ""] = desk  # the most recent one comes last

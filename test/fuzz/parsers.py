@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 from hypothesis import strategies as st
 
-from fuzz import recordings, texts
+from fuzz import asking, recordings, texts
 from fuzz.mutation import mutated
 from pneumo_ros.command.inputs import read_csv
 from pneumo_ros.control.control_file import load_control
@@ -186,5 +186,6 @@ PARSERS = (
     Parser("control file", "control.yaml", read_control, *_of_text(_shipped("control/cascade"))),
     Parser("programme", "programme.yaml", read_trials, *_of_text(PROGRAMME.encode())),
     Parser("CSV of voltages", "input.csv", read_voltages, lambda: mutated([CSV]) | texts.CSV_FILES, lambda: CSV),
+    Parser("HTTP of the workbench", "request", asking.ask, asking.inputs, lambda: asking.requests()[0]),
     Parser("file of effects", "mine.py", read_effects, lambda: mutated([EFFECT.encode()], 3), lambda: EFFECT.encode()),
 )

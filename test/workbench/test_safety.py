@@ -111,3 +111,13 @@ def test_only_what_is_offered_is_sent(served: Served, name: str) -> None:
     assert ask(served, f"/files/{desk(served)}/{name}", Cookie=known(served)).status == 404
     outside = ask(served, f"/files/{desk(served)}/..%2f..%2f..%2fetc%2fpasswd", Cookie=known(served))
     assert b"root:" not in outside.body
+
+
+@pytest.mark.parametrize("body", ["[]", "{}", '{"output": 3}', '{"output": "a.b", "inputs": 1}', "null", '"x"', "{"])
+def test_what_the_page_never_sends_is_answered_in_words(served: Served, body: str) -> None:
+    headers = {"Cookie": known(served), "Content-Type": "application/json"}
+    answer = ask(served, "/_dash-update-component", "POST", body.encode(), **headers)
+    assert answer.status == 400
+    assert answer.headers["Content-Type"].startswith("text/plain")
+    assert b"Traceback" not in answer.body
+    assert b"<html" not in answer.body

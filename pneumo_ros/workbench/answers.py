@@ -1,0 +1,36 @@
+"""What a request gets that cannot be answered: a sentence, never a page of somebody else's or a traceback."""
+
+import logging
+import traceback
+
+from flask import Flask, Response, request
+from werkzeug.exceptions import HTTPException
+
+_LOG = logging.getLogger(__name__)
+_OURS = "pneumo_ros"
+_WORDS = 200  # characters of what went wrong
+
+
+def answer_in_words(server: Flask) -> None:
+    """Errors of `server` become a line of text: what the page never sends is the sender's, the rest is ours."""
+    server.register_error_handler(HTTPException, _refused)
+    server.register_error_handler(Exception, _failed)
+
+
+def _refused(problem: HTTPException) -> Response:
+    return _said(f"{problem.name}: {problem.description or ''}", problem.code or 500)
+
+
+def _failed(problem: Exception) -> Response:
+    """A request that Dash cannot take apart before any panel sees it is malformed; else a panel failed."""
+    frames = traceback.extract_tb(problem.__traceback__)
+    ours = [f for f in frames if f"/{_OURS}/workbench/" in f.filename.replace("\\", "/")]
+    what = f"{type(problem).__name__}: {problem}"[:_WORDS]
+    if not ours:
+        return _said(f"The page does not send this ({what}); reload it", 400)
+    _LOG.error("%s failed at %s:%s: %s", request.path, ours[-1].filename, ours[-1].lineno, what)
+    return _said(f"The workbench failed at this ({what}); where, is said in its terminal", 500)
+
+
+def _said(words: str, status: int) -> Response:
+    return Response(" ".join(words.split()) + "\n", status, mimetype="text/plain")
