@@ -2,9 +2,9 @@
 
 A seal's friction grows less than in proportion to the pressures, a spring hardens, a leak is an orifice. So an effect
 that was added may act more or less than its law says where the piston is elsewhere, faster, under other pressures or
-another input: a (1 + sum of e_k x_k), x_k the deviations of what is measured from its mean, in standard ones. The e_k
-stand beside the base parameters while further candidates are judged; the model that is refitted and that predicts keeps
-the catalogue's law.
+another input: a (1 + sum of e_k x_k), x_k the deviations of what is measured from its mean, in standard ones, and their
+squares less 1. The e_k stand beside the base parameters while further candidates are judged; the model that is refitted
+and that predicts keeps the catalogue's law.
 """
 
 from dataclasses import dataclass, replace
@@ -38,10 +38,11 @@ class Conditions:
         return cls(values)
 
     def relative(self, other: "Conditions") -> Array:
-        """Deviations from the mean of others, in their standard deviations; those that never change are left out."""
+        """Deviations x from the mean of others, in their standard ones, and x^2 - 1; what never changes is left out."""
         middle, spread = other.values.mean(axis=0), other.values.std(axis=0)
         moving = spread > 1e-9 * np.maximum(np.abs(middle), 1e-12)
-        return np.asarray((self.values[:, moving] - middle[moving]) / spread[moving])
+        x = (self.values[:, moving] - middle[moving]) / spread[moving]
+        return np.concatenate([x, x**2 - 1.0], axis=1)
 
 
 def freed(fit: BaseFit, added: list[str], usual: Conditions) -> BaseFit:
