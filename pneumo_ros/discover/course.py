@@ -130,9 +130,9 @@ def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Ar
     return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
 
 
-def _sensors(model: Model) -> list[type[Effect]]:
-    """The effects of the model by which sensors show something else than a state."""
-    return [e for e in model.composition.effects if any(s in SENSED for f in e.functions.values() for s in f.writes)]
+def reads_wrong(effect: type[Effect]) -> bool:
+    """Whether an effect makes sensors show something else than a state."""
+    return any(signal in SENSED for function in effect.functions.values() for signal in function.writes)
 
 
 def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
@@ -142,7 +142,7 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     """
     frame = {"y", "v", "p_a", "p_b", *SENSED}
     columns: list[int] = []
-    for effect in _sensors(model):
+    for effect in filter(reads_wrong, model.composition.effects):
         reads = {name for function in effect.functions.values() for name in function.reads}
         if not reads <= frame | set(effect.states) | set(effect.parameters):
             return np.arange(len(parameters)), np.arange(len(parameters))
@@ -155,7 +155,7 @@ def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
     """Which parameter vectors (variants, parameters) make any sensor of the model show something else than a state."""
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
-    for effect in _sensors(model):
+    for effect in filter(reads_wrong, model.composition.effects):
         fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
         acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
         found |= np.any(acts, axis=0) if acts else True

@@ -4,7 +4,7 @@ A seal's friction grows less than in proportion to the pressures, a spring harde
 that was added may act more or less than its law says where the piston is elsewhere, faster, under other pressures or
 another input: a (1 + sum of e_k x_k), x_k the deviations of what is measured from its mean, in standard ones, and their
 squares less 1. The e_k stand beside the base parameters while further candidates are judged; the model that is refitted
-and that predicts keeps the catalogue's law.
+and that predicts keeps the catalogue's law. What sensors do has no such freedom: an offset is an offset.
 """
 
 from dataclasses import dataclass, replace
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.coordinates import coordinates
+from pneumo_ros.discover.course import reads_wrong
 from pneumo_ros.discover.evidence import Course, Evidence
 from pneumo_ros.discover.hypothesis import BaseFit
 
@@ -47,6 +48,7 @@ class Conditions:
 
 def freed(fit: BaseFit, added: list[str], usual: Conditions) -> BaseFit:
     """The fit with the e_k of each effect that was added as further base parameters, relative to usual conditions."""
+    added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
     if not added:
         return fit
     relative = Conditions.of(fit.evidence).relative(usual)

@@ -70,3 +70,9 @@ def test_another_effect_is_not_within_it() -> None:
 def test_a_model_without_additions_has_no_such_freedom() -> None:
     fit = BaseFit(MODEL, MODEL, (), np.empty(0), np.empty(0), EVIDENCE, np.zeros(N), np.empty((N, 0)))
     assert freed(fit, [], Conditions.of(EVIDENCE)) is fit
+
+
+def test_what_sensors_do_has_no_such_freedom() -> None:
+    model = START.with_effects([*START.effects, "pressure_sensor_offset"])
+    fit = BaseFit(model, model, (), np.empty(0), np.empty(0), EVIDENCE, np.zeros(N), np.empty((N, 0)))
+    assert freed(fit, ["pressure_sensor_offset"], Conditions.of(EVIDENCE)) is fit
