@@ -61,7 +61,7 @@ test: $(READY) | .cache/tmp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest $(PYTEST)
+	@tools/run_tests $(BIN)/python $(PYTEST)
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done

@@ -25,7 +25,8 @@ FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
 WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, and pneumo view
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0"]
-DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
+DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
+BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
 CONFIG_FILES = ("yaml", "rviz", "xml", "json")  # machines and controllers; layouts of rviz, PlotJuggler and Foxglove
 
@@ -75,7 +76,7 @@ setup(
         "workbench": WORKBENCH,
         "dask": DASK,
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + TEST + DEV,
+        "dev": REPORT + FIGURES + WORKBENCH + DASK + TEST + DEV + BUILD,
     },
     entry_points={
         "console_scripts": [
