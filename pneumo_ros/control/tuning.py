@@ -12,7 +12,8 @@ from pneumo_ros.control.sensors import NoisySensors
 from pneumo_ros.control.setpoint import Reference
 from pneumo_ros.errors import NumericalError
 
-EXPLORED, SPREAD = 0.5, 5.0  # share of the evaluations that are drawn, within so many times of where they begin
+EXPLORED, DRAWN = 0.5, 40  # share of the evaluations that are drawn, and how many at most: the rest is for the search
+SPREAD = 5.0  # they are drawn within so many times of where they begin
 FACTORS = (1.5, 1.2)  # by which a gain is changed afterwards, the coarse one first
 WORST = 100.0  # cost of a run that fails
 NOISE_SEED, DRAW_SEED = 1, 0
@@ -90,7 +91,7 @@ class Search:
 
     def _explore(self) -> None:
         begin, random = dict(self.gains), np.random.default_rng(DRAW_SEED)
-        while self.count < EXPLORED * self.evaluations:
+        while self.count < min(EXPLORED * self.evaluations, DRAWN):
             factors = SPREAD ** random.uniform(-1.0, 1.0, len(begin))
             self._take({name: self._rounded(name, f * begin[name]) for name, f in zip(begin, factors, strict=True)})
 

@@ -17,6 +17,7 @@ Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
 SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
 SPOILED = 0.5  # of its best gain: by no more may another equation get worse, which something else may still bend
 REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
+NEARLY = 0.95  # of what noise does not explain: one effect does not explain the rest of another's shape that well
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a quarter of that, still counts
 MOSTLY = 0.6  # of an equation's mean square, noise and all, on held-out runs
@@ -85,7 +86,7 @@ class Trial:
         worst = min(change, key=lambda name: change[name])
         if change[worst] < -SPOILED * max(most, GAIN_LEAST):
             found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")
-        if self.rest < REST_LEAST:
+        if self.rest < REST_LEAST and self.share < NEARLY:
             found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) != "momentum")
         if self.share < SHARE_LEAST[0 if alone else 1]:
