@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
-from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Unexplained, Value
+from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.prediction import HORIZON, typical_error
-from pneumo_ros.discover.ranking import ranking
 from pneumo_ros.discover.search import Progress, Search
 from pneumo_ros.discover.steps import Found, Step
+from pneumo_ros.discover.trial import Trial
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
@@ -64,7 +64,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         base=found.base,
         model=found.model,
         added=added,
-        ranking=ranking(search, found.steps),
+        ranking=tuple(_ranked(trial) for trial in _latest(found.steps)),
         steps=found.steps,
         before=before,
         after=after,
@@ -107,6 +107,20 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
         dotted = f"{name}.{key}"
         values[key] = Value(model[dotted], std.get(dotted, float("inf")), parameter.unit)
     return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
+
+
+def _latest(steps: Sequence[Step]) -> list[Trial]:
+    """Each candidate's trial in the last round it was tried in; what was added comes first."""
+    added = [step.added for step in steps if step.added]
+    seen = {trial.name: trial for step in steps for trial in step.trials}
+    seen |= {trial.name: trial for step in steps for trial in step.rivals}  # of the round in which they tied
+    names = [trial.name for trial in added]
+    return [*added, *sorted((t for n, t in seen.items() if n not in names), key=lambda trial: -trial.hypothesis.t)]
+
+
+def _ranked(trial: Trial) -> Ranked:
+    equation = max(trial.gain, key=lambda name: trial.gain[name])
+    return Ranked(trial.name, trial.hypothesis.t, trial.gain[equation], equation, trial.size, trial.objections, None)
 
 
 def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:

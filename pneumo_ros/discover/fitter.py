@@ -92,7 +92,7 @@ class Fitter:
     def extended(self, model: Model, h: Hypothesis) -> Model:
         """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
         known, moved = self.known(model), {}
-        for n, shift, p in zip(known.names, h.shift, known.prior, strict=False):  # the law's freedom comes after them
+        for n, shift, p in zip(known.names, h.shift[: len(known.names)], known.prior, strict=True):
             s = model.specification(n)
             moved[n] = min(max(model[n] + shift * p, s.low), s.high)
         moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing

@@ -45,7 +45,7 @@ class Ranked:
     equation: str  # that equation
     size: float  # in usual sizes of the effect
     objections: tuple[str, ...]  # why it was not added; empty for what was, and for its rivals
-    holdout_error: float | None  # held-out window error with it as it was tried; None of what was added, see Addition
+    holdout_error: float | None  # held-out window error with it; None where it was not predicted
 
 
 @dataclass(frozen=True)
