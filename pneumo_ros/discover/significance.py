@@ -10,6 +10,8 @@ from pneumo_ros.discover.hypothesis import BaseFit, cluster_robust, wald
 
 Array = NDArray[np.float64]
 
+DEGENERATE = 1e6  # no recording is that sure: what moves no residual has no scatter either, and the priors say how sure
+
 
 def significance(base: BaseFit, own: Sequence[Coordinate], u: Array, A: Array, e: Array, ridge: Array) -> float:
     """t of the sizes at u (own,), shapes as they were found: without the effect there is no shape to be uncertain of.
@@ -23,7 +25,8 @@ def significance(base: BaseFit, own: Sequence[Coordinate], u: Array, A: Array, e
     K = A[:, kept]
     bread = np.linalg.inv(K.T @ K + np.diag(ridge[kept]))
     away = np.array([distance(own[j], float(u[j])) for j in sizes])
-    return wald(away, cluster_robust(K, e, base.evidence.block, bread, ridge[kept])[p:, p:])
+    t = wald(away, cluster_robust(K, e, base.evidence.block, bread, ridge[kept])[p:, p:])
+    return t if t < DEGENERATE else min(t, wald(away, bread[p:, p:]))
 
 
 def distance(c: Coordinate, u: float) -> float:
