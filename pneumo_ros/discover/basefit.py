@@ -115,5 +115,6 @@ def unaided(base: BaseFit) -> Hypothesis:
 
 
 def relief_of(base: BaseFit, shift: Array) -> float:
-    """Log likelihood of the priors that base parameters regain by a shift."""
-    return strain(base.offset) - strain(shift + base.offset)
+    """Log likelihood of the priors that the model's own parameters regain by a shift; bent laws do not count."""
+    own = slice(0, len(base.names) - base.bends)
+    return strain(base.offset[own]) - strain((shift + base.offset)[own])

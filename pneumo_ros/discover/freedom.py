@@ -60,6 +60,7 @@ def freed(fit: BaseFit, added: list[str], usual: Conditions) -> BaseFit:
         prior=np.append(fit.prior, np.full(count, FREE)),
         offset=np.append(fit.offset, np.zeros(count)),
         slopes=np.concatenate([fit.slopes, columns], axis=1),
+        bends=count,
     )
 
 

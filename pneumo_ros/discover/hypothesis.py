@@ -95,7 +95,10 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class BaseFit:
-    """The current model on one set of runs: residual, derivative by free parameters per prior, offsets from priors."""
+    """The current model on one set of runs: residual, derivative by free parameters per prior, offsets from priors.
+
+    The last `bends` of the parameters are no parameters of the model but bend laws of its effects (see `freedom`).
+    """
 
     model: Model
     everything: Model
@@ -105,6 +108,7 @@ class BaseFit:
     evidence: Evidence
     residual: Array
     slopes: Array
+    bends: int = 0
 
 
 def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:

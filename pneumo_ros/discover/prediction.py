@@ -33,7 +33,12 @@ def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
 
 def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Whether predictions of some signal got better by a twentieth and none worse by a tenth."""
-    return any(after[n] <= BETTER * before[n] for n in before) and all(after[n] <= WORSE * before[n] for n in before)
+    return any(after[n] <= BETTER * before[n] for n in before) and harmless(before, after)
+
+
+def harmless(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of no signal got worse by a tenth."""
+    return all(after[n] <= WORSE * before[n] for n in before)
 
 
 def typical_error(errors: Mapping[str, float]) -> float:

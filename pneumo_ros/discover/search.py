@@ -14,7 +14,7 @@ from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.discover.measures import excess, force
 from pneumo_ros.discover.polishing import polish
-from pneumo_ros.discover.prediction import pays, windowed
+from pneumo_ros.discover.prediction import harmless, pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
 from pneumo_ros.discover.rivals import rivals, simplest
 from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
@@ -68,7 +68,7 @@ class Search:
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                 new, gone = self.extended(model, step.added)
                 after = self.predicted(new)
-                if step.added.name in gone or not (self.beyond_doubt(step.added) or pays(before, after)):
+                if step.added.name in gone or not convinces(step.added, before, after):
                     banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
                     continue
                 banned |= dict.fromkeys(gone, VANISHED)
@@ -92,14 +92,6 @@ class Search:
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
-
-    @staticmethod
-    def beyond_doubt(trial: Trial) -> bool:
-        """Whether an effect need not show in predictions: its equation is explained, or the data cannot tell at all.
-
-        While something else is missing, predictions over a second may hang on that alone.
-        """
-        return trial.absorbed or trial.clear
 
     def polish(self, model: Model) -> Model:
         """Friction refitted to breakaways and reversals, which decide about predictions through them."""
@@ -142,7 +134,10 @@ class Search:
         now = excess(self.held, held.residual)
         self.first = self.first or now
         self.left = force(self.held, held.residual, np.zeros(len(self.held)))
-        trials = [replace(t, refused=banned.get(t.name, ""), rest=remaining(t, self.first, now)) for t in trials]
+        quiet = self.left <= TEXTURE * self.held.drive
+        trials = [
+            replace(t, refused=banned.get(t.name, ""), rest=remaining(t, self.first, now), quiet=quiet) for t in trials
+        ]
         best = simplest(base, held, [trial for trial in trials if not trial.objections])
         others = rivals(base, held, best, trials) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
@@ -171,6 +166,15 @@ class Search:
         good = [trial.name for trial in trials if not trial.objections]
         relieving = followed(self.fitter, base, screened, nothing.relief, good)
         return trials + put_on_trial(base, held, *relieving, nothing, first)
+
+
+def convinces(trial: Trial, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions bear an effect out, or need not: its equation is explained, or the data do not say at all.
+
+    While something else is missing, predictions over a second may hang on that alone; but where the data do not say,
+    predictions may not get worse either.
+    """
+    return trial.clear or pays(before, after) or (trial.absorbed and harmless(before, after))
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

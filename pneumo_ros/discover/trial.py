@@ -44,6 +44,7 @@ class Trial:
     force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
+    quiet: bool = True  # whether no force of size is unexplained: else base parameters may be strained by that
     refused: str = ""  # why it was taken back after it had been added
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
 
@@ -69,7 +70,7 @@ class Trial:
         """Whether base parameters stand in for it: the data do not say, but what is known of those parameters does."""
         h = self.hypothesis
         indifferent = all(gain > -GAIN_LEAST for gain in self.gain.values())
-        return indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
+        return self.quiet and indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
 
     def _data_objections(self) -> list[str]:
         """What the recordings say against it."""
