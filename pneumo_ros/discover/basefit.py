@@ -116,5 +116,4 @@ def unaided(base: BaseFit) -> Hypothesis:
 
 def relief_of(base: BaseFit, shift: Array) -> float:
     """Log likelihood of the priors that the model's own parameters regain by a shift; bent laws do not count."""
-    own = slice(0, len(base.names) - base.bends)
-    return strain(base.offset[own]) - strain((shift + base.offset)[own])
+    return strain(base.offset[base.own]) - strain((shift + base.offset)[base.own])

@@ -157,7 +157,7 @@ def excess(equation: EquationVerdict) -> float:
 
 
 def material(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether what remains matters: forces beyond a per cent of the drive, and no small rest of what was explained."""
+    """Whether what remains matters: forces beyond 0.7 % of the drive, and no small rest of what was explained."""
     first, last = before.equations[name], after.equations[name]
     if name == "momentum" and last.residual_rms < MATERIAL_FORCE * drive(after):
         return False

@@ -1,7 +1,7 @@
 """A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.freedom import Conditions, freed
+from pneumo_ros.discover.freedom import conditions, freed, relative
 from pneumo_ros.discover.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -41,7 +41,6 @@ class Fitter:
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train, self.held = Evidence(start, train), Evidence(start, held)
-        self.usual = Conditions.of(self.train)
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
 
     def known(self, model: Model) -> Known:
@@ -71,8 +70,18 @@ class Fitter:
     def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence, the laws of what was added free in shape."""
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
-        added = [name for name in model.effects if name not in self.start.effects]
-        return freed(train, added, self.usual), freed(held, added, self.usual)
+        added, (usual, others) = self.added(model), self.conditions
+        return freed(train, added, usual), freed(held, added, others)
+
+    def added(self, model: Model) -> list[str]:
+        """Effects of `model` that the start lacks."""
+        return [name for name in model.effects if name not in self.start.effects]
+
+    @cached_property
+    def conditions(self) -> tuple[Array, Array]:
+        """Under which the residuals of both arise, relative to what is usual of those fitted."""
+        here = conditions(self.train)
+        return relative(here, here), relative(conditions(self.held), here)
 
     def _fit(self, model: Model) -> BaseFit:
         """The model on training evidence."""

@@ -7,7 +7,7 @@ squares less 1. The e_k stand beside the base parameters while further candidate
 and that predicts keeps the catalogue's law. What sensors do has no such freedom: an offset is an offset.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,41 +22,37 @@ Array = NDArray[np.float64]
 FREE = 0.1  # standard deviation of e_k: a law is known to a tenth over the usual range of what it depends on
 
 
-@dataclass(frozen=True)
-class Conditions:
-    """Under which each residual arises; arrays (residuals, conditions): position, speed, pressures, size of input."""
+def conditions(evidence: Evidence) -> Array:
+    """Under which each residual arises, in the middle of its window: position, speed, pressures, size of the input.
 
-    values: Array
-
-    @classmethod
-    def of(cls, evidence: Evidence) -> "Conditions":
-        """Those of all residuals, in the middle of their windows."""
-        columns = 3 + 2 * (not evidence.courses[0].run.force_driven)
-        values = np.zeros((len(evidence.time), columns))
-        for course in evidence.courses:
-            own = evidence.run == course.families[0].run
-            values[own] = _seen(course, evidence.time[own])
-        return cls(values)
-
-    def relative(self, other: "Conditions") -> Array:
-        """Deviations x from the mean of others, in their standard ones, and x^2 - 1; what never changes is left out."""
-        middle, spread = other.values.mean(axis=0), other.values.std(axis=0)
-        moving = spread > 1e-9 * np.maximum(np.abs(middle), 1e-12)
-        x = (self.values[:, moving] - middle[moving]) / spread[moving]
-        return np.concatenate([x, x**2 - 1.0], axis=1)
+    (residuals, 3 or 5).
+    """
+    columns = 3 + 2 * (not evidence.courses[0].run.force_driven)
+    values = np.zeros((len(evidence.time), columns))
+    for course in evidence.courses:
+        own = evidence.run == course.families[0].run
+        values[own] = _seen(course, evidence.time[own])
+    return values
 
 
-def freed(fit: BaseFit, added: list[str], usual: Conditions) -> BaseFit:
-    """The fit with the e_k of each effect that was added as further base parameters, relative to usual conditions."""
+def relative(values: Array, others: Array) -> Array:
+    """Deviations x from the mean of others, in their standard ones, and x^2 - 1; what never changes is left out."""
+    middle, spread = others.mean(axis=0), others.std(axis=0)
+    moving = spread > 1e-9 * np.maximum(np.abs(middle), 1e-12)
+    x = (values[:, moving] - middle[moving]) / spread[moving]
+    return np.concatenate([x, x**2 - 1.0], axis=1)
+
+
+def freed(fit: BaseFit, added: list[str], seen: Array) -> BaseFit:
+    """The fit with the e_k of each effect that was added as further base parameters; seen: `relative` conditions."""
     added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
     if not added:
         return fit
-    relative = Conditions.of(fit.evidence).relative(usual)
-    columns = np.concatenate([FREE * _acting(fit, effect)[:, None] * relative for effect in added], axis=1)
+    columns = np.concatenate([FREE * _acting(fit, effect)[:, None] * seen for effect in added], axis=1)
     count = columns.shape[1]
     return replace(
         fit,
-        names=(*fit.names, *(f"{effect} {k}" for effect in added for k in range(relative.shape[1]))),
+        names=(*fit.names, *(f"{effect} {k}" for effect in added for k in range(seen.shape[1]))),
         prior=np.append(fit.prior, np.full(count, FREE)),
         offset=np.append(fit.offset, np.zeros(count)),
         slopes=np.concatenate([fit.slopes, columns], axis=1),

@@ -31,8 +31,12 @@ def robust_scale(size: Array) -> float:
 
     No tighter: an effect that shows in a few windows only (at slow motion, near an end) must not pass for outliers.
     """
-    usual = max(1.4826 * float(np.median(size)), 1.0) if len(size) else 1.0
-    return float(np.sqrt(np.mean(np.minimum(size, FAR * usual) ** 2))) if len(size) else 0.0
+    return float(np.sqrt(np.mean(np.minimum(size, FAR * usual(size)) ** 2))) if len(size) else 0.0
+
+
+def usual(size: Array) -> float:
+    """The usual one of sizes (n,): the deviation of Gaussian errors with their median, at least that of noise."""
+    return max(1.4826 * float(np.median(size)), 1.0) if len(size) else 1.0
 
 
 FLOOR = {"breakaway": 0.2}  # the spread given to breakaways is generous: their own scatter says more
@@ -109,6 +113,11 @@ class BaseFit:
     residual: Array
     slopes: Array
     bends: int = 0
+
+    @property
+    def own(self) -> slice:
+        """Which of the parameters are the model's."""
+        return slice(0, len(self.names) - self.bends)
 
 
 def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:

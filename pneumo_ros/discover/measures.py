@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.hypothesis import FLOOR, OVERLAP, family_scales, huber, robust_scale
+from pneumo_ros.discover.hypothesis import FLOOR, OVERLAP, family_scales, huber, robust_scale, usual
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -57,12 +57,8 @@ def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = N
 
 def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
     """The same of what is usual: one wild breakaway of twenty says nothing against what the others bear out."""
-    most = np.ones(len(evidence.names))
-    for k in range(len(most)):
-        own = evidence.family == k
-        if own.any():
-            most[k] = WILD * max(1.4826 * float(np.median(np.abs(before[own]))), 1.0)
-    limit = most[evidence.family]
+    each = [usual(np.abs(before[evidence.family == k])) for k in range(len(evidence.names))]
+    limit = WILD * np.array(each)[evidence.family]
     return gains(evidence, np.clip(before, -limit, limit), np.clip(after, -limit, limit))
 
 

@@ -11,13 +11,12 @@ from pneumo_ros.discover.hypothesis import (
     PROBE,
     BaseFit,
     Hypothesis,
-    cluster_robust,
     family_scales,
     solve,
     vectors,
     weights,
 )  # fmt: skip
-from pneumo_ros.discover.significance import significance
+from pneumo_ros.discover.significance import covariances, significance
 
 Array = NDArray[np.float64]
 
@@ -125,12 +124,17 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     K, ridge, _offset = _system(base, h, u, C)
     w = weights(base.evidence, after, family_scales(base.evidence, after))
     A = K * w[:, None]
-    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
-    cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
-    t = significance(base, h.coordinates, u, A, w * after, ridge)
+    of_all = of_sizes = covariances(base, A, w * after, ridge)
+    sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
+    if len(sizes) < len(u):
+        # Without the effect there is no shape to be uncertain of. Free beside a small size, a shape that trades with
+        # it, as a share of flow with its conductance, would hide the largest gain.
+        kept = [*range(p), *(p + j for j in sizes)]
+        of_sizes = covariances(base, A[:, kept], w * after, ridge[kept])
+    t = significance([h.coordinates[j] for j in sizes], u[sizes], *of_sizes)
     relief = relief_of(base, shift)
     return replace(
-        h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=cov, slopes=C, relief=relief
+        h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=of_all[0], slopes=C, relief=relief
     )
 
 

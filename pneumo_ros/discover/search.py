@@ -88,7 +88,7 @@ class Search:
     def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
         """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
         new = self.polish(self.fitter.refit(self.fitter.extended(model, trial.hypothesis)))
-        gone = [name for name in new.effects if name not in self.start.effects and size_in(new, name) < MATERIAL]
+        gone = [name for name in self.fitter.added(new) if size_in(new, name) < MATERIAL]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
@@ -98,8 +98,7 @@ class Search:
         made = self.slips(model)
         if made is None:
             return model
-        added = [name for name in model.effects if name not in self.start.effects]
-        return with_values_of(model, polished(*made, self.fitter.deviations(model), added))
+        return with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
 
     def settled(self, model: Model) -> Model:
         """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.

@@ -13,20 +13,21 @@ Array = NDArray[np.float64]
 DEGENERATE = 1e6  # no recording is that sure: what moves no residual has no scatter either, and the priors say how sure
 
 
-def significance(base: BaseFit, own: Sequence[Coordinate], u: Array, A: Array, e: Array, ridge: Array) -> float:
-    """t of the sizes at u (own,), shapes as they were found: without the effect there is no shape to be uncertain of.
+def covariances(base: BaseFit, A: Array, e: Array, ridge: Array) -> tuple[Array, Array]:
+    """Of the candidate's columns of A, which come after the base parameters': cluster-robust, and by the noise alone.
 
-    Free beside a small size, a shape that trades with it (a share of flow with its conductance) would hide the largest
-    gain. A (residuals, base + own): weighted slopes; e: weighted residual; ridge: information of the priors.
+    A (residuals, base + own): weighted slopes; e: weighted residual; ridge: information of the priors.
     """
     p = len(base.names)
-    sizes = [j for j, c in enumerate(own) if c.is_size]
-    kept = [*range(p), *(p + j for j in sizes)]
-    K = A[:, kept]
-    bread = np.linalg.inv(K.T @ K + np.diag(ridge[kept]))
-    away = np.array([distance(own[j], float(u[j])) for j in sizes])
-    t = wald(away, cluster_robust(K, e, base.evidence.block, bread, ridge[kept])[p:, p:])
-    return t if t < DEGENERATE else min(t, wald(away, bread[p:, p:]))
+    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    return cluster_robust(A, e, base.evidence.block, bread, ridge)[p:, p:], bread[p:, p:]
+
+
+def significance(own: Sequence[Coordinate], u: Array, robust: Array, plain: Array) -> float:
+    """t of sizes at u (own,) by their covariances (own, own)."""
+    away = np.array([distance(c, float(x)) for c, x in zip(own, u, strict=True)])
+    t = wald(away, robust)
+    return t if t < DEGENERATE else min(t, wald(away, plain))
 
 
 def distance(c: Coordinate, u: float) -> float:

@@ -135,7 +135,7 @@ def deviations_better(before: Array, after: Array) -> float:
     return float((wins - 0.5 * count) / (0.5 * np.sqrt(count))) if count else 0.0
 
 
-def known(k: Coordinate, value: float, std: dict[str, float]) -> bool:
+def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
     """Whether it is a size that differs from none by more than twice its standard deviation."""
     return k.is_size and abs(value - (k.neutral or 0.0)) > 2.0 * std.get(k.name, np.inf)
 
@@ -148,7 +148,7 @@ def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, bas
     gain = 1.0 - float(np.median(c.held) / np.median(base_held))
     share = share_removed(base_held, c.held)
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
-    if not any(known(k, c.model[k.name], c.std) for k in effect):
+    if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is no larger than its uncertainty"
     return Trial(
         h, np.empty(0), {"slip": gain}, z_held, magnitude(effect, u), True, share, first, 0.0,

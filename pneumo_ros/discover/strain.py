@@ -48,10 +48,10 @@ def followed(
 
 def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> Hypothesis:
     fit, own = fitter.fit(new), coordinates(new.library.find(name))
-    kept = [k for k, n in enumerate(base.names) if n in fit.names]  # all but powers of what was added before
+    rows = [fit.names.index(n) for n in base.names[base.own]]
     columns = [fit.names.index(c.name) for c in own]
     offset = base.offset.copy()
-    offset[kept] = fit.offset[[fit.names.index(base.names[k]) for k in kept]]
+    offset[base.own] = fit.offset[rows]
     std = fitter.deviations(new)
     return Hypothesis(
         name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, fit.residual,

@@ -7,7 +7,6 @@ from flask import Flask, Response, request
 from werkzeug.exceptions import HTTPException
 
 _LOG = logging.getLogger(__name__)
-_OURS = "pneumo_ros"
 _WORDS = 200  # characters of what went wrong
 
 
@@ -24,7 +23,7 @@ def _refused(problem: HTTPException) -> Response:
 def _failed(problem: Exception) -> Response:
     """A request that Dash cannot take apart before any panel sees it is malformed; else a panel failed."""
     frames = traceback.extract_tb(problem.__traceback__)
-    ours = [f for f in frames if f"/{_OURS}/workbench/" in f.filename.replace("\\", "/")]
+    ours = [f for f in frames if "/pneumo_ros/workbench/" in f.filename.replace("\\", "/")]
     what = f"{type(problem).__name__}: {problem}"[:_WORDS]
     if not ours:
         return _said(f"The page does not send this ({what}); reload it", 400)

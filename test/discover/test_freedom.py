@@ -8,7 +8,7 @@ import pytest
 
 from pneumo_ros.discover.basefit import unaided
 from pneumo_ros.discover.evidence import Evidence
-from pneumo_ros.discover.freedom import Conditions, freed
+from pneumo_ros.discover.freedom import conditions, freed, relative
 from pneumo_ros.discover.hypothesis import BaseFit
 from pneumo_ros.plant import load_model
 
@@ -33,6 +33,7 @@ EVIDENCE = cast(
         time=np.arange(N, dtype=float), noise=np.full(N, NOISE), courses=[COURSE], block=np.arange(N) // 20,
     ),
 )  # fmt: skip
+RELATIVE = relative(conditions(EVIDENCE), conditions(EVIDENCE))
 LAW = SIZE * SPEED / NOISE  # what the catalogue's law adds to each residual, in deviations
 
 
@@ -43,7 +44,7 @@ def left(machine: np.ndarray, free: bool) -> float:
     fit = BaseFit(
         MODEL, MODEL, ("viscous_friction.coefficient",), np.array([SIZE]), np.zeros(1), EVIDENCE, residual, slopes
     )
-    fit = freed(fit, ["viscous_friction"] if free else [], Conditions.of(EVIDENCE))
+    fit = freed(fit, ["viscous_friction"] if free else [], RELATIVE)
     return float(np.sqrt(np.mean(unaided(fit).residual ** 2)))
 
 
@@ -69,10 +70,10 @@ def test_another_effect_is_not_within_it() -> None:
 
 def test_a_model_without_additions_has_no_such_freedom() -> None:
     fit = BaseFit(MODEL, MODEL, (), np.empty(0), np.empty(0), EVIDENCE, np.zeros(N), np.empty((N, 0)))
-    assert freed(fit, [], Conditions.of(EVIDENCE)) is fit
+    assert freed(fit, [], RELATIVE) is fit
 
 
 def test_what_sensors_do_has_no_such_freedom() -> None:
     model = START.with_effects([*START.effects, "pressure_sensor_offset"])
     fit = BaseFit(model, model, (), np.empty(0), np.empty(0), EVIDENCE, np.zeros(N), np.empty((N, 0)))
-    assert freed(fit, ["pressure_sensor_offset"], Conditions.of(EVIDENCE)) is fit
+    assert freed(fit, ["pressure_sensor_offset"], RELATIVE) is fit
