@@ -11,6 +11,7 @@ Each parser has a process of its own. The exit code is 1 when anything is broken
 """
 
 import argparse
+import math
 import multiprocessing
 import os
 import sys
@@ -109,7 +110,8 @@ def main() -> int:
 
     options, begun = arguments(), time.monotonic()
     chosen = [number for number, parser in enumerate(PARSERS) if options.only in parser.name]
-    jobs = [(number, max(options.inputs // len(chosen), 1), options.seed) for number in chosen]
+    each = math.ceil(options.inputs / len(chosen))
+    jobs = [(number, each, options.seed) for number in chosen]
     with multiprocessing.get_context("spawn").Pool(options.jobs, maxtasksperchild=1) as pool:
         rows = []
         for row in pool.imap(fuzz_one, jobs):

@@ -1,6 +1,5 @@
 """Control files: the law, its gains and the smoothing of the valve, as ROS parameters of the controller."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -17,6 +16,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.yaml_text import load_yaml
 
 SMOOTHING = ValveInverse().smoothing
+SMOOTHEST = 10.0  # V
 
 
 @dataclass(frozen=True)
@@ -79,8 +79,8 @@ def _control(document: Any) -> Control:
     gains, valve = _section(given, law), _section(given, "valve")
     made = LAWS[law](gains)  # whether they are gains of it
     smoothing = valve.get("smoothing", SMOOTHING)
-    if isinstance(smoothing, bool) or not isinstance(smoothing, int | float) or not 0.0 <= smoothing < math.inf:
-        raise UsageError(f"valve.smoothing is {brief(smoothing)}; it takes a voltage of 0 V or more")
+    if isinstance(smoothing, bool) or not isinstance(smoothing, int | float) or not 0.0 <= smoothing <= SMOOTHEST:
+        raise UsageError(f"valve.smoothing is {brief(smoothing)}; it takes a voltage from 0 to {SMOOTHEST:g} V")
     return Control(law, {name: getattr(made, name) for name in gains}, float(smoothing))
 
 

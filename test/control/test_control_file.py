@@ -56,6 +56,7 @@ def test_a_law_knows_the_machine_it_is_made_for() -> None:
         (f"/**: {{ros__parameters: {{law: pid, pid: {{proportional: 1{350 * '0'}}}}}}}", "gain proportional is 1000"),
         ("/**: {ros__parameters: {law: pid, valve: 0.1}}", "section valve is 0.1"),
         ("/**: {ros__parameters: {law: pid, valve: {smoothing: .nan}}}", "valve.smoothing is nan"),
+        (f"/**: {{ros__parameters: {{law: pid, valve: {{smoothing: 1{350 * '0'}}}}}}}", "valve.smoothing is 1000"),
     ],
 )
 def test_what_is_no_control_file_is_refused(text: str, said: str, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pneumo_ros.control import LAWS, Law, Machine, Reference, ValveInverse
+from pneumo_ros.control.control_file import SMOOTHEST, SMOOTHING
 from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.plant import load_model
@@ -30,7 +31,9 @@ _VALVE = (
     Setting("dead_zone.left_limit", 0.78, "magnitude of the voltage at which port a begins to empty", "V", 0.0, 10.0),
     Setting("dead_zone.right_slope", 1.0, "slope beyond the right limit", "V/V", 0.01, 100.0),
     Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
-    Setting("valve.smoothing", 0.02, "opening by which the jump across the dead zone is complete", "V", 0.0, 10.0),
+    Setting(
+        "valve.smoothing", SMOOTHING, "opening by which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
+    ),
 )
 EFFECTS = "effects"
 
