@@ -1,4 +1,4 @@
-"""Faults at random, in real processes: simulator, controller, recorder, identification and player.
+"""Faults at random, in real processes: simulator, controller, recorder, identification, player and workbench.
 
 Processes are killed, stopped and doubled, messages come at 10 kHz, without numbers, too large or from another time,
 disks are full or read only, parameters are turned at random. After each fault everything must speak again, with

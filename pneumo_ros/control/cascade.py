@@ -19,15 +19,17 @@ class Cascade(ApproachingLaw):
         F'  = F_d' + K_P (F_d - F)                        pneumatic loop, solved for the opening (see `pneumatics`)
 
     The friction observer's bristles are bent by kappa s besides: at rest, where no velocity is seen, this is what
-    brings the force to breakaway. Departures: scale of friction and load are learnt while the piston slides; F_d' is
-    taken where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there
-    for the proof of stability, is left out, being less than 1 N/s here.
+    brings the force to breakaway. Departures: while the piston sticks under a moving setpoint they do not give way
+    against s, for where a slip ends the piston springs back, and pressures that followed would be lost for the next
+    breakaway; scale of friction and load are learnt while the piston slides; F_d' is taken where it is smooth, of
+    M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there for the proof of stability, is
+    left out, being less than 1 N/s here.
     """
 
     tuned = ("damping", "force_rate", "position_rate", "correction", "braking", "bandwidth")
     damping = Gain(300.0, "N s/m", "K_D, force per velocity error", 0.0, 1e5)
     force_rate = Gain(60.0, "1/s", "K_P, rate at which an error of the force is removed", 0.0, 2000.0)
-    correction = Gain(0.5, "1", "kappa, velocity error that bends the bristles of the friction observer", 0.0, 100.0)
+    correction = Gain(0.1, "1", "kappa, velocity error that bends the bristles of the friction observer", 0.0, 100.0)
     learning = Gain(10.0, "1/s", "rate at which scale of friction and load are learnt while sliding", 0.0, 1000.0)
 
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
@@ -40,7 +42,7 @@ class Cascade(ApproachingLaw):
         """F_d [N] and the smooth part of its rate [N/s]."""
         mass, v = self.machine.moving_mass, state.velocity
         s = wanted.velocity - v
-        friction = self.friction.step(v, dt, self.correction * s)
+        friction = self.friction.step(v, dt, self.correction * s, held=setpoint.velocity != 0.0)
         measured = state.air.force - mass * state.acceleration - self.machine.load
         self.friction.learn(measured, v, 1.0 - math.exp(-self.learning * dt))
         force = mass * wanted.acceleration + self.damping * s + friction + self.machine.load

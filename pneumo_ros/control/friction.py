@@ -52,9 +52,12 @@ class FrictionObserver:
         """Its derivative [N s/m]."""
         return self.machine.viscous_friction + 2.0 * self.machine.drag * abs(velocity)
 
-    def step(self, velocity: float, dt: float, correction: float = 0.0) -> float:
-        """Go on by `dt` [s] at `velocity` [m/s]; `correction` [m/s] bends sticking bristles besides. Returns F [N]."""
-        left = dt - self._bend(velocity, dt, correction)
+    def step(self, velocity: float, dt: float, correction: float = 0.0, *, held: bool = False) -> float:
+        """Go on by `dt` [s] at `velocity` [m/s]; `correction` [m/s] bends sticking bristles besides. Returns F [N].
+
+        Bristles that are `held` go the way of the correction or stay, whatever the velocity.
+        """
+        left = dt - self._bend(velocity, dt, correction, held)
         self.sliding = left > 0.0
         if self.sliding:
             steady = math.copysign(self.level(velocity) / self.machine.bristle_stiffness, velocity)
@@ -84,7 +87,7 @@ class FrictionObserver:
         self.scale += share * (1.0 - self.scale)
         self.bias -= share * self.bias
 
-    def _bend(self, velocity: float, dt: float, correction: float) -> float:
+    def _bend(self, velocity: float, dt: float, correction: float, held: bool) -> float:
         """Bend the bristles elastically; returns for how long [s] of `dt`. What is left they slip."""
         m = self.machine
         edge = m.breakaway_ratio * self.level(velocity) / m.bristle_stiffness
@@ -93,5 +96,8 @@ class FrictionObserver:
         room = math.copysign(edge, velocity) - self.z
         elastic = min(max(room / velocity, 0.0), dt) if velocity != 0.0 else dt
         most = HEADROOM * max(m.static_friction, m.coulomb_friction) / m.bristle_stiffness
-        self.z = min(max(self.z + velocity * elastic + correction * dt, -most), most)
+        bent = min(max(self.z + velocity * elastic + correction * dt, -most), most)
+        if held and not self.sliding and (bent - self.z) * correction < 0.0:
+            return dt
+        self.z = bent
         return elastic

@@ -1,34 +1,60 @@
 """What changed from campaign to campaign: parameters beyond what their intervals allow, effects that appeared."""
 
 import math
-from collections.abc import Sequence
-from statistics import NormalDist
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from statistics import NormalDist, median
 from typing import Any
 
 Examined = dict[str, Any]  # machine, campaign, date, and the result of `examine`
 
 ALARM = 0.01  # chance that anything is said to drift in a fleet where nothing does
-MATERIAL = 0.01  # of a value: intervals hold the noise of sensors, not how well a machine repeats itself
-_NORMAL = 1.96
+MATERIAL = 0.03  # of a value: a machine that is taken apart by nobody repeats its friction no better (EMPS: 3 %)
+ENOUGH = 8  # changes from campaign to campaign, over the fleet, that tell how well machines repeat themselves
+_NORMAL, _MAD = 1.96, 1.4826  # deviations: of half a 95 % interval, and of a median of magnitudes
 
 
 def history(campaigns: Sequence[Examined]) -> list[dict[str, Any]]:
     """A machine each: its parameters over time, what drifted and since when, which effect appeared when.
 
     campaigns: in the order of time. A parameter drifted when it left its first interval by more than chance explains,
-    over all that is compared in the fleet (Bonferroni), and by more than MATERIAL of its value, and stayed away.
+    over all that is compared in the fleet (Bonferroni), and by more than MATERIAL of its value, and stayed away. Chance
+    is what the intervals hold and how far, beyond them, the machines of the fleet scatter from campaign to campaign.
     """
     machines: dict[str, list[Examined]] = {}
     for one in campaigns:
         machines.setdefault(one["machine"], []).append(one)
-    compared = sum(max(len(points) - 1, 0) for ours in machines.values() for points in _tracks(ours).values())
+    tracks = {name: _tracks(ours) for name, ours in machines.items()}
+    compared = sum(max(len(points) - 1, 0) for mine in tracks.values() for points in mine.values())
     limit = NormalDist().inv_cdf(1.0 - 0.5 * ALARM / max(compared, 1))
-    return [_machine(name, ours, limit) for name, ours in machines.items()]
+    keys = {key for mine in tracks.values() for key in mine}
+    scatter = {key: unrepeated([mine[key] for mine in tracks.values() if key in mine]) for key in keys}
+    return [_machine(name, ours, tracks[name], limit, scatter) for name, ours in machines.items()]
 
 
-def _machine(name: str, ours: Sequence[Examined], limit: float) -> dict[str, Any]:
-    tracks = _tracks(ours)
-    drifted = {key: moved for key, points in tracks.items() if (moved := drift(points, limit))}
+def unrepeated(tracks: Sequence[Sequence[dict[str, Any]]]) -> float:
+    """How far one parameter scatters from campaign to campaign, beyond its intervals: a deviation relative to values.
+
+    From the median of all successive changes, which a drift or a jump of some machines leaves alone; 0 where there are
+    fewer than ENOUGH.
+    """
+    pairs = [pair for points in tracks for pair in pairwise(points)]
+    if len(pairs) < ENOUGH:
+        return 0.0
+    sizes = [max(abs(first["value"]), abs(second["value"]), 1e-300) for first, second in pairs]
+    changes = [abs(second["value"] - first["value"]) / size for (first, second), size in zip(pairs, sizes, strict=True)]
+    known = [_spread(first, second) / size for (first, second), size in zip(pairs, sizes, strict=True)]
+    return math.sqrt(max((_MAD * median(changes)) ** 2 - median(known) ** 2, 0.0) / 2.0)
+
+
+def _machine(
+    name: str,
+    ours: Sequence[Examined],
+    tracks: Mapping[str, Sequence[dict[str, Any]]],
+    limit: float,
+    scatter: Mapping[str, float],
+) -> dict[str, Any]:
+    drifted = {key: moved for key, points in tracks.items() if (moved := drift(points, limit, scatter[key]))}
     effects = {effect: since(effect, ours) for one in ours for effect in _names(one)}
     return {
         "machine": name,
@@ -48,11 +74,14 @@ def _tracks(ours: Sequence[Examined]) -> dict[str, list[dict[str, Any]]]:
     return tracks
 
 
-def drift(points: Sequence[dict[str, Any]], limit: float) -> dict[str, Any] | None:
-    """How a parameter left its first value, and since when; None when it did not, beyond `limit` deviations."""
+def drift(points: Sequence[dict[str, Any]], limit: float, scatter: float = 0.0) -> dict[str, Any] | None:
+    """How a parameter left its first value, and since when; None when it did not, beyond `limit` deviations.
+
+    scatter: from campaign to campaign, relative, beyond intervals; see `unrepeated`.
+    """
     first, away = points[0], None
     for point in points[1:]:
-        gone = _left(first, point, limit)
+        gone = _left(first, point, limit, scatter)
         away = (away or point) if gone else None
     if away is None:
         return None
@@ -60,19 +89,19 @@ def drift(points: Sequence[dict[str, Any]], limit: float) -> dict[str, Any] | No
     return {
         "since": away["campaign"], "date": away["date"], "first": first["value"], "last": last["value"],
         "low": last["low"], "high": last["high"], "unit": last["unit"],
-        "deviations": abs(last["value"] - first["value"]) / _spread(first, last),
+        "deviations": abs(last["value"] - first["value"]) / _spread(first, last, scatter),
     }  # fmt: skip
 
 
-def _left(first: dict[str, Any], point: dict[str, Any], limit: float) -> bool:
+def _left(first: dict[str, Any], point: dict[str, Any], limit: float, scatter: float) -> bool:
     change = abs(point["value"] - first["value"])
-    return bool(change > limit * _spread(first, point) and change > MATERIAL * abs(first["value"]))
+    return bool(change > limit * _spread(first, point, scatter) and change > MATERIAL * abs(first["value"]))
 
 
-def _spread(first: dict[str, Any], point: dict[str, Any]) -> float:
+def _spread(first: dict[str, Any], point: dict[str, Any], scatter: float = 0.0) -> float:
     """Standard deviation of a difference."""
     halves = [0.5 * (one["high"] - one["low"]) / _NORMAL for one in (first, point)]
-    return max(math.hypot(*halves), 1e-300)
+    return max(math.hypot(*halves, *(scatter * one["value"] for one in (first, point))), 1e-300)
 
 
 def since(effect: str, ours: Sequence[Examined]) -> dict[str, Any]:

@@ -47,8 +47,11 @@ def accept_uploads(server: Flask, folder_of: Callable[[str], Path]) -> None:
             return Response("there is no such desk; open the page again", 404)
         except UsageError as problem:
             return Response(str(problem), 400)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _write(target)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            _write(target)
+        except OSError as problem:  # the disk filled up meanwhile
+            return Response(f"{target.name} cannot be kept: {problem.strerror}; open it by name: pneumo workbench", 507)
         return Response("", 204)
 
     server.config["MAX_CONTENT_LENGTH"] = LARGEST

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from chaos.disks import DISKS, FILES, available
 from chaos.field import Field
 from chaos.messages import MESSAGES
+from chaos.pages import FULL, PAGES
 from chaos.processes import PROCESSES
 
 Fault = Callable[[Field], Any]
@@ -56,8 +57,8 @@ class Outcome(NamedTuple):
 
 def kinds(folder: Path) -> tuple[dict[str, Fault], list[str]]:
     """Every fault that can be had here, and the names of the others."""
-    faults = {**PROCESSES, **MESSAGES, **FILES}
-    return (faults | DISKS, []) if available(folder) else (faults, list(DISKS))
+    faults, disks = {**PROCESSES, **MESSAGES, **FILES, **PAGES}, {**DISKS, **FULL}
+    return (faults | disks, []) if available(folder) else (faults, list(disks))
 
 
 def order(faults: Iterable[str], count: int, random: Random) -> list[str]:

@@ -109,9 +109,20 @@ def test_a_drift_is_what_left_its_interval_and_stays_away(values: tuple[float, .
     assert (one["drifted"]["f.c"]["since"] if one["drifted"] else None) == since
 
 
-def test_a_change_of_less_than_a_percent_is_none_however_well_it_is_known() -> None:
-    (one,) = history([examined(0, 1000.0, 1e-3), examined(1, 1005.0, 1e-3)])
+def test_a_change_within_what_machines_repeat_is_none_however_well_it_is_known() -> None:
+    (one,) = history([examined(0, 1000.0, 1e-3), examined(1, 1025.0, 1e-3)])
     assert not one["drifted"]
+
+
+def test_machines_that_scatter_beyond_their_intervals_do_not_drift_for_that() -> None:
+    import numpy as np
+
+    values = np.random.default_rng(2).normal(100.0, 6.0, (40, 6))
+    values[0] += [0.0, 0.0, 0.0, 60.0, 60.0, 60.0]
+    values[1] += np.arange(6) * 12.0
+    fleet = [examined(k, values[m, k], 0.1) | {"machine": str(m)} for m in range(40) for k in range(6)]
+    drifted = [one["machine"] for one in history(fleet) if one["drifted"]]
+    assert drifted == ["0", "1"]
 
 
 def test_in_a_large_fleet_chance_alone_drifts_nothing() -> None:

@@ -20,8 +20,10 @@ PATIENCE = 30.0  # s
 class Running:
     """A process and all it has said so far, line by line with the time of arrival."""
 
-    def __init__(self, *command: str, cwd: Path) -> None:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    def __init__(self, *command: str, cwd: Path, **variables: str) -> None:
+        """`variables` go into its environment."""
+        path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+        environment = {**os.environ, "PYTHONPATH": path, **variables}
         self.process = subprocess.Popen(
             [sys.executable, *command],
             stdout=subprocess.PIPE,
@@ -62,9 +64,9 @@ class Running:
 
 
 @contextmanager
-def running(*command: str, cwd: Path) -> Iterator[Running]:
+def running(*command: str, cwd: Path, **variables: str) -> Iterator[Running]:
     """A Python process with `command`, which does not outlive the block."""
-    process = Running(*command, cwd=cwd)
+    process = Running(*command, cwd=cwd, **variables)
     try:
         yield process
     finally:

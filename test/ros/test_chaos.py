@@ -23,11 +23,12 @@ def test_faults_leave_everything_in_order(tmp_path: Path) -> None:
     assert outcome.recorded > 100
 
 
-def test_a_disk_that_fills_up_leaves_a_recording_that_reads(tmp_path: Path) -> None:
+@pytest.mark.parametrize("fault", ["disk full while recording", "disk full of uploads"])
+def test_a_disk_that_fills_up_leaves_what_is_whole(fault: str, tmp_path: Path) -> None:
     faults, without = kinds(tmp_path)
     if without:
         pytest.skip("a small disk can be mounted by root only")
-    outcome = campaign(tmp_path, 1, 5, 60.0, [name for name in faults if name == "disk full while recording"])
+    outcome = campaign(tmp_path, 1, 5, 60.0, [name for name in faults if name == fault])
     assert not outcome.broken, outcome.text()
 
 
