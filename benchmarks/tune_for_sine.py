@@ -14,7 +14,7 @@ from control_cases import AXIS, HERE, SINE
 from pneumo_ros.command.trials import stepper
 from pneumo_ros.control import Law
 from pneumo_ros.control.control_file import Control, load_control
-from pneumo_ros.control.tuning import Search, Trial
+from pneumo_ros.control.tuning import Search, Trial, costs_here
 
 EVALUATIONS = 80  # as `pneumo tune`
 ALONE = Trial(partial(stepper, AXIS), SINE, 24.0, 4.0)  # the first fifth of a period is not judged, as there
@@ -27,7 +27,7 @@ def found(law: str) -> Control:
     def make(gains: Mapping[str, float]) -> Law:
         return Control(law, {**begin.gains, **gains}, begin.smoothing).make(AXIS.effects, AXIS.parameters)
 
-    search = Search(make, [ALONE], EVALUATIONS)
+    search = Search(make, costs_here(make, [ALONE]), EVALUATIONS)
     gains = search.run()
     print(f"{law}: cost {search.first:.3f} -> {search.least:.3f}")
     return Control(law, {**begin.gains, **gains}, begin.smoothing)

@@ -23,6 +23,8 @@ EVALUATIONS = 80
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--law, --out and what is to be followed."""
+    from pneumo_ros.sweep.executors import FORMS
+
     parser.add_argument("--law", metavar="NAME", help="pid, pva, cascade (default) or sliding_mode")
     parser.add_argument("--out", required=True, metavar="FILE", help="control file to write")
     parser.add_argument("--control", metavar="FILE", help="control file to start from (default: the law's defaults)")
@@ -33,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--spool", type=float, metavar="RAD/S", help=slow)
     runs = f"how often to try gains, of which each try is four runs (default: {EVALUATIONS})"
     parser.add_argument("--evaluations", type=int, default=EVALUATIONS, metavar="N", help=runs)
+    parser.add_argument("--executor", metavar="NAME", default="processes", help=f"{FORMS} (default: processes)")
     add_model(parser)
     add_output(parser)
 
@@ -75,9 +78,10 @@ def _start(options: argparse.Namespace) -> "Control":
 
 
 def _search(options: argparse.Namespace, start: "Control", model: "Model", task: "Task", console: Console) -> "Search":
-    from pneumo_ros.command.trials import trials_of
+    from pneumo_ros.command.tuning import costs_over
     from pneumo_ros.control.control_file import Control
     from pneumo_ros.control.tuning import Search
+    from pneumo_ros.sweep import open_pool
 
     def make(gains: Mapping[str, float]) -> "Law":
         return Control(start.law, {**start.gains, **gains}, start.smoothing).make(model.effects, model.parameters)
@@ -86,10 +90,10 @@ def _search(options: argparse.Namespace, start: "Control", model: "Model", task:
         f"Tuning {start.law} for {model.name}: sine of {task.amplitude:g} m, {task.frequency:.3g} Hz, and moves of "
         f"{1e3 * task.step:g} mm"
     )
-    with console.progress("Tuning") as progress:
+    with open_pool(options.executor) as pool, console.progress("Tuning") as progress:
         search = Search(
             make,
-            trials_of(model, task, options.spool),
+            costs_over(pool, start, task, options),
             options.evaluations,
             lambda count, _: progress(count / options.evaluations),
         )

@@ -1,5 +1,6 @@
 """Gains found by simulation: one procedure for every law."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -17,6 +18,10 @@ SPREAD = 5.0  # they are drawn within so many times of where they begin
 FACTORS = (1.5, 1.2)  # by which a gain is changed afterwards, the coarse one first
 WORST = 100.0  # cost of a run that fails
 NOISE_SEED, DRAW_SEED = 1, 0
+TOGETHER = 8  # sets of gains that are drawn and judged at a time
+
+Gains = Mapping[str, float]
+Costs = Callable[[Sequence[Gains]], Sequence[float]]
 
 
 @dataclass(frozen=True)
@@ -69,17 +74,20 @@ class Search:
 
     def __init__(
         self,
-        make: Callable[[Mapping[str, float]], Law],
-        trials: Sequence[Trial],
+        make: Callable[[Gains], Law],
+        costs: Costs,
         evaluations: int = 60,
         told: Callable[[int, float], object] = lambda count, least: None,
     ) -> None:
-        """`make` turns gains into the law; `told` hears the number of evaluations so far and the least cost."""
-        self._make, self._trials, self._told = make, trials, told
-        self.evaluations, self.count = evaluations, 0
+        """`make` turns gains into the law, `costs` says what several sets of gains cost, such as `costs_here`; `told`
+        hears the number of evaluations so far and the least cost.
+        """
+        self._costs, self._told = costs, told
+        self.evaluations, self.count = evaluations, 1
         law = make({})
         self._kind, self.gains = type(law), {name: float(getattr(law, name)) for name in law.tuned}
-        self.least = self.first = self._cost(self.gains)
+        (self.least,) = costs([self.gains])
+        self.first = self.least
 
     def run(self) -> dict[str, float]:
         """The gains of least cost, once nothing pays any more or all evaluations are spent."""
@@ -91,9 +99,10 @@ class Search:
 
     def _explore(self) -> None:
         begin, random = dict(self.gains), np.random.default_rng(DRAW_SEED)
-        while self.count < min(EXPLORED * self.evaluations, DRAWN):
-            factors = SPREAD ** random.uniform(-1.0, 1.0, len(begin))
-            self._take({name: self._rounded(name, f * begin[name]) for name, f in zip(begin, factors, strict=True)})
+        while (left := math.ceil(min(EXPLORED * self.evaluations, DRAWN)) - self.count) > 0:
+            factors = SPREAD ** random.uniform(-1.0, 1.0, (min(left, TOGETHER), len(begin)))
+            drawn = [{n: self._rounded(n, f * begin[n]) for n, f in zip(begin, row, strict=True)} for row in factors]
+            self._take(drawn)
 
     def _round(self, factor: float) -> bool:
         paid = [self._try(name, factor) or self._try(name, 1.0 / factor) for name in self._kind.tuned]
@@ -103,21 +112,24 @@ class Search:
         value = self._rounded(name, self.gains[name] * factor)
         if value == self.gains[name] or self.count >= self.evaluations:
             return False
-        return self._take({**self.gains, name: value})
+        return self._take([{**self.gains, name: value}])
 
     def _rounded(self, name: str, value: float) -> float:
         """A gain within its range, to three digits: a control file is read by people."""
         gain = self._kind.gains[name]
         return float(f"{min(max(value, gain.low), gain.high):.3g}")
 
-    def _take(self, candidate: dict[str, float]) -> bool:
-        """Keep the candidate if it is the best so far."""
-        found = self._cost(candidate)
-        if found < self.least:
-            self.gains, self.least = candidate, found
-        self._told(self.count, self.least)
-        return self.gains is candidate
+    def _take(self, candidates: Sequence[dict[str, float]]) -> bool:
+        """Keep the candidate that is the best so far, if one is."""
+        before = self.least
+        for candidate, found in zip(candidates, self._costs(candidates), strict=True):
+            self.count += 1
+            if found < self.least:
+                self.gains, self.least = candidate, found
+            self._told(self.count, self.least)
+        return self.least < before
 
-    def _cost(self, gains: Mapping[str, float]) -> float:
-        self.count += 1
-        return cost(self._make(gains), self._trials)
+
+def costs_here(make: Callable[[Gains], Law], trials: Sequence[Trial]) -> Costs:
+    """Costs found one after another, in this process."""
+    return lambda many: [cost(make(gains), trials) for gains in many]

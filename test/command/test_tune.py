@@ -12,7 +12,7 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 
 AXIS = load_model("axis")
-SHORT = ("--amplitude", "0.05", "--frequency", "0.25", "--quiet", "--evaluations")
+SHORT = ("--amplitude", "0.05", "--frequency", "0.25", "--quiet", "--executor", "one", "--evaluations")
 
 
 def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -28,6 +28,16 @@ def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: 
     assert "pneumo tune" in out.read_text().splitlines()[0]
     assert main(["tune", "--control", str(out), *SHORT, "1", "--out", str(out), "--json", str(data)]) == 0
     assert json.loads(data.read_text())["cost"]["before"] == pytest.approx(told["cost"]["after"])
+
+
+def test_processes_find_the_same_gains_to_the_bit(tmp_path: Path) -> None:
+    found = []
+    for executor in ("one", "processes=2"):
+        data = tmp_path / f"{executor}.json"
+        words = ["tune", "--law", "pid", *SHORT, "4", "--executor", executor, "--out", str(tmp_path / "pid.yaml")]
+        assert main([*words, "--json", str(data)]) == 0
+        found.append({name: json.loads(data.read_text())[name] for name in ("gains", "cost")})
+    assert found[0] == found[1]
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from functools import partial
 import pytest
 from control.following import AXIS, law_for
 
-from pneumo_ros.control import Pid
+from pneumo_ros.control import Law, Pid
 from pneumo_ros.control.reference import moves, sine
-from pneumo_ros.control.tuning import WORST, Search, Trial, Weights, cost
+from pneumo_ros.control.tuning import WORST, Gains, Search, Trial, Weights, cost, costs_here
 from pneumo_ros.errors import NumericalError
 from pneumo_ros.plant import Stepper
 
@@ -27,10 +27,13 @@ def test_a_worse_law_costs_more_and_the_valve_costs_too() -> None:
 
 def test_it_finds_better_gains_and_repeats() -> None:
     make = partial(law_for, "pid")
+
+    def law(gains: Gains) -> Law:
+        return make(**gains)
+
     told: list[tuple[int, float]] = []
     searches = [
-        Search(lambda gains: make(**gains), TRIALS, 14, lambda count, least: told.append((count, least)))
-        for _ in range(2)
+        Search(law, costs_here(law, TRIALS), 14, lambda count, least: told.append((count, least))) for _ in range(2)
     ]
     found = [search.run() for search in searches]
     assert found[0] == found[1]
@@ -41,7 +44,10 @@ def test_it_finds_better_gains_and_repeats() -> None:
 
 
 def test_only_tuned_gains_move_within_their_ranges() -> None:
-    gains = Search(lambda g: law_for("pid", **g), TRIALS[1:], 8).run()
+    def law(gains: Gains) -> Law:
+        return law_for("pid", **gains)
+
+    gains = Search(law, costs_here(law, TRIALS[1:]), 8).run()
     assert set(gains) == set(Pid.tuned)
     assert all(Pid.gains[name].low <= value <= Pid.gains[name].high for name, value in gains.items())
 
