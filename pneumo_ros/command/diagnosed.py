@@ -159,7 +159,22 @@ def remaining(result: Mapping[str, Any]) -> str:
         )
         return "Nothing of size remains unexplained in any equation." + (yet if error > ENOUGH else "")
     small = "" if result["unexplained"]["material"] else "; too little to be worth another effect"
-    return f"Unexplained: {_equation(result['unexplained']['equation'])} leaves {_left(result)}{small}."
+    said = f"Unexplained: {_equation(result['unexplained']['equation'])} leaves {_left(result)}{small}."
+    return said + _between(result["unexplained"]["moved"])
+
+
+def _between(moved: Mapping[str, Any] | None) -> str:
+    """That the machine itself changed between the recordings, where most of what remains is that."""
+    if moved is None:
+        return ""
+    changes = [
+        f"{name} {number(one['before'], 4)} -> {number(one['after'], 4)} {one['unit']}".rstrip()
+        for name, one in moved["parameters"].items()
+    ]
+    return (
+        f"\n{percent(moved['share'])} of that is gone once the model's own parameters are fitted to the held-out "
+        f"recordings: {', '.join(changes)}. The machine itself was another one then, as by temperature or wear."
+    )
 
 
 def _left(result: Mapping[str, Any]) -> str:

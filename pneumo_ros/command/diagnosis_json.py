@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.compare import Comparison
+    from pneumo_ros.discover.between import Moved
     from pneumo_ros.discover.outcome import Addition, Outcome, Ranked, Unexplained
     from pneumo_ros.discover.trial import Trial
     from pneumo_ros.identify.refit import Estimate
@@ -124,4 +125,11 @@ def _unexplained(left: "Unexplained") -> dict[str, Any]:
         "shape": [[x, y] for x, y in zip(at, mean, strict=True)], "unit": left.unit,
         "low": low, "high": high, "noise": noise, "seconds": seconds,
         "residual_rms": left.rms, "explained_share": left.share, "material": left.material,
+        "moved": None if left.moved is None else _moved(left.moved),
     }  # fmt: skip
+
+
+def _moved(moved: "Moved") -> dict[str, Any]:
+    """Parameters of the model itself that are others on held-out recordings."""
+    values = {n: {"before": one, "after": two, "unit": unit} for n, (one, two, unit) in moved.parameters.items()}
+    return {"share": moved.share, "parameters": values}

@@ -28,5 +28,10 @@ class ApproachingLaw(ModelLaw):
         """Wanted velocity and acceleration; call once per measurement."""
         error = setpoint.position - state.position
         self._approach.watch(setpoint, error, self.stops.stuck, self.patience, self.detour)
+        return self.wanted_at(setpoint, state)
+
+    def wanted_at(self, setpoint: Setpoint, state: AxisState) -> Wanted:
+        """Wanted velocity and acceleration, were `setpoint` that of now; call as often as you like."""
+        error = setpoint.position - state.position
         shape = self.position_rate, self.braking, self.slowest, self.stop
         return self._approach.wanted(setpoint, error, state.velocity, *shape)

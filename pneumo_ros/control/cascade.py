@@ -2,12 +2,14 @@
 
 import math
 
-from pneumo_ros.control.approach import Wanted
+from pneumo_ros.control.approach import Wanted, remaining
 from pneumo_ros.control.approaching_law import ApproachingLaw
 from pneumo_ros.control.gain import Gain
 from pneumo_ros.control.model_law import AxisState
 from pneumo_ros.control.pneumatics import opening
 from pneumo_ros.control.setpoint import Setpoint
+
+SHARE = 0.75  # of a slow spool's frequency: the pneumatic loop rings when it is faster
 
 
 class Cascade(ApproachingLaw):
@@ -21,30 +23,47 @@ class Cascade(ApproachingLaw):
     The friction observer's bristles are bent by kappa s besides: at rest, where no velocity is seen, this is what
     brings the force to breakaway. Departures: while the piston sticks under a moving setpoint they do not give way
     against s, for where a slip ends the piston springs back, and pressures that followed would be lost for the next
-    breakaway; scale of friction and load are learnt while the piston slides; F_d' is taken where it is smooth, of
-    M j_d, of K_D s and of what grows with speed; the paper's term in s within F', there for the proof of stability, is
-    left out, being less than 1 N/s here.
+    breakaway; and where the setpoint is coming back to a piston ahead of it, so that s has another sign now than
+    `lead` later, it waits, loaded for where it is to go then. Scale of friction and load are learnt while the piston
+    slides; F_d' is taken where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s
+    within F', there for the proof of stability, is left out, being less than 1 N/s here.
     """
 
     tuned = ("damping", "force_rate", "position_rate", "correction", "braking", "bandwidth")
     damping = Gain(300.0, "N s/m", "K_D, force per velocity error", 0.0, 1e5)
     force_rate = Gain(60.0, "1/s", "K_P, rate at which an error of the force is removed", 0.0, 2000.0)
     correction = Gain(0.1, "1", "kappa, velocity error that bends the bristles of the friction observer", 0.0, 100.0)
+    lead = Gain(
+        0.3, "s", "time ahead at which the setpoint tells a piston that sticks whether to wait; 0: never", 0.0, 5.0
+    )
     learning = Gain(10.0, "1/s", "rate at which scale of friction and load are learnt while sliding", 0.0, 1000.0)
 
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
         """Opening [V] of the valve."""
         wanted = self.wanted(setpoint, state)
         force, rate = self._force(setpoint, state, wanted, dt)
-        return opening(self.machine, state.air, state.velocity, rate + self.force_rate * (force - state.air.force))
+        follow = min(self.force_rate, SHARE * self.machine.spool_frequency)
+        return opening(self.machine, state.air, state.velocity, rate + follow * (force - state.air.force))
 
     def _force(self, setpoint: Setpoint, state: AxisState, wanted: Wanted, dt: float) -> tuple[float, float]:
         """F_d [N] and the smooth part of its rate [N/s]."""
         mass, v = self.machine.moving_mass, state.velocity
-        s = wanted.velocity - v
-        friction = self.friction.step(v, dt, self.correction * s, held=setpoint.velocity != 0.0)
+        s, acceleration = wanted.velocity - v, wanted.acceleration
+        moving = setpoint.velocity != 0.0
+        asked = moving and self.lead > 0.0 and not self.friction.sliding
+        later = self._later(setpoint, state) if asked else s
+        if s * later < 0.0:
+            friction, s, acceleration = self.friction.wait(v, dt, self.correction * later), 0.0, 0.0
+        else:
+            friction = self.friction.step(v, dt, self.correction * s, held=moving)
         measured = state.air.force - mass * state.acceleration - self.machine.load
         self.friction.learn(measured, v, 1.0 - math.exp(-self.learning * dt))
-        force = mass * wanted.acceleration + self.damping * s + friction + self.machine.load
-        rate = mass * setpoint.jerk + self.friction.running_slope(v) * wanted.acceleration
-        return force, rate + self.damping * (wanted.acceleration - state.acceleration)
+        force = mass * acceleration + self.damping * s + friction + self.machine.load
+        rate = mass * setpoint.jerk + self.friction.running_slope(v) * acceleration
+        return force, rate + self.damping * (acceleration - state.acceleration)
+
+    def _later(self, setpoint: Setpoint, state: AxisState) -> float:
+        """s [m/s] as it will be `lead` from now, if the piston stays where it is."""
+        left = remaining(setpoint)
+        ahead = setpoint.ahead(self.lead) if left is None else Setpoint(setpoint.position + left)
+        return self.wanted_at(ahead, state).velocity - state.velocity

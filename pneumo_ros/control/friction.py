@@ -9,6 +9,7 @@ HEADROOM = 1.5  # most that a correction may bend the bristles, over what F_s do
 TELLING = 0.02  # m/s, sliding at this speed tells the level; below, the Stribeck curve is too steep
 LEAST, MOST = 0.3, 3.0  # range of the learnt scale
 LOADED = 0.5  # largest bias, of the force that the supply can make
+READY = 0.9  # of Coulomb friction: the force of a piston that waits, ready to break away but no nearer to it than that
 FORGETTING = 0.5  # 1/s, while it sticks: what was learnt at an end stop must not hold it there
 
 
@@ -64,6 +65,16 @@ class FrictionObserver:
             self.z = steady + (self.z - steady) * math.exp(-velocity / steady * left)
         else:
             self._forget(1.0 - math.exp(-FORGETTING * dt))
+        return self.force(velocity)
+
+    def wait(self, velocity: float, dt: float, correction: float) -> float:
+        """Sticking for `dt` [s] more: whatever the velocity, bend bristles by `correction` [m/s] until they are ready
+        to go its way, and no farther. Returns F [N].
+        """
+        way = math.copysign(1.0, correction)
+        room = READY * self.machine.coulomb_friction / self.machine.bristle_stiffness - way * self.z
+        self.z += way * min(max(room, 0.0), abs(correction) * dt)
+        self._forget(1.0 - math.exp(-FORGETTING * dt))
         return self.force(velocity)
 
     def force(self, velocity: float) -> float:

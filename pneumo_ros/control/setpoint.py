@@ -12,5 +12,12 @@ class Setpoint(NamedTuple):
     acceleration: float = 0.0
     jerk: float = 0.0
 
+    def ahead(self, time: float) -> "Setpoint":
+        """The motion `time` [s] later, its jerk being what it is now."""
+        p, v, a, j = self
+        return Setpoint(
+            p + time * (v + time * (a / 2.0 + time * j / 6.0)), v + time * (a + time * j / 2.0), a + time * j, j
+        )
+
 
 Reference = Callable[[float], Setpoint]  # time [s] -> Setpoint

@@ -1,11 +1,13 @@
 """`diagnose`: the search, judged on held-out runs, as one outcome."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
+from pneumo_ros.discover.between import moved_between
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.prediction import HORIZON, typical_error
 from pneumo_ros.discover.search import Progress, Search
@@ -58,6 +60,8 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     )
     before, after = comparisons[1], comparisons[len(models) - 1]
     unexplained = remains(before, after)
+    if unexplained is not None and unexplained.material:
+        unexplained = replace(unexplained, moved=moved_between(search.fitter, found.model, unexplained.equation))
     return Outcome(
         verdict=verdict(added, unexplained),
         failing=failing(before, added, found.base),

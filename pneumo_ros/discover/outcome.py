@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison
+from pneumo_ros.discover.between import Moved
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.plant import Model
 
@@ -64,6 +65,7 @@ class Unexplained:
     rms: float
     share: float  # of the residual's square that the variable explains, predicted for data left out
     material: bool  # whether it is of a size that matters, rather than texture or the rest of an added effect's shape
+    moved: Moved | None = None  # where most of it is the model's own parameters being others on held-out recordings
 
 
 @dataclass(frozen=True)

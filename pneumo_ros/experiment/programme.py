@@ -4,7 +4,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import UsageError, brief
 from pneumo_ros.experiment.voltages import Constant, Voltage
 
 MAX_VOLTAGE = 10.0  # V, what valve amplifiers of this kind take
@@ -23,11 +23,11 @@ class Trial:
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w[\w.-]*", self.name):
-            raise UsageError(f"trial '{self.name}': its recording needs a plain file name, such as constant_p1100")
+            raise UsageError(f"trial {brief(self.name)}: its recording needs a plain file name, such as constant_p1100")
         if not (math.isfinite(self.seconds) and self.seconds > 0.0):
-            raise UsageError(f"trial {self.name} lasts {self.seconds:g} s; it takes a time above 0")
+            raise UsageError(f"trial {brief(self.name)} lasts {self.seconds:g} s; it takes a time above 0")
         if not (math.isfinite(self.patience) and self.patience >= 0.0 and self.travel > 0.0):
-            raise UsageError(f"trial {self.name}: patience takes 0 s or more, travel more than 0 m")
+            raise UsageError(f"trial {brief(self.name)}: patience takes 0 s or more, travel more than 0 m")
 
     @property
     def direction(self) -> int:

@@ -80,11 +80,11 @@ def _trial(entry: object) -> Trial:
     numbers = {key: _number(given, key, unit) for key, unit in {"patience": "s", "travel": "m"}.items() if key in given}
     anywhere = given.get("anywhere", False)
     if not isinstance(anywhere, bool):
-        raise UsageError(f"trial '{name}': anywhere is {brief(anywhere)}; it takes true or false")
+        raise UsageError(f"trial {brief(name)}: anywhere is {brief(anywhere)}; it takes true or false")
     try:
         return Trial(name, voltages.from_dict(given), _number(given, "seconds", "s"), anywhere=anywhere, **numbers)
     except UsageError as error:
-        raise UsageError(f"trial '{name}': {error}") from error
+        raise UsageError(f"trial {brief(name)}: {error}") from error
 
 
 def _section(value: object, what: str, allowed: Iterable[str]) -> dict[str, Any]:

@@ -26,7 +26,21 @@ def remains_section(outcome: "Outcome", experiment: str) -> Section:
     )
     more = tag("p", "Against the other variables: ", tag("a", "Equations", href="#equations"), ".")
     charts = (_chart(outcome, left),) if len(left.at) else ()
-    return Section("remains", title, Html(tag("p", text) + more + _advice(experiment)), charts=charts)
+    return Section("remains", title, Html(tag("p", text) + _between(left) + more + _advice(experiment)), charts=charts)
+
+
+def _between(left: "Unexplained") -> Html:
+    """That the machine itself changed between the recordings, where most of what remains is that."""
+    if left.moved is None:
+        return Html()
+    changes = [
+        f"{n} {number(one)} to {number(two)} {unit}".rstrip() for n, (one, two, unit) in left.moved.parameters.items()
+    ]
+    text = (
+        f"{percent(left.moved.share)} of it is gone once the model's own parameters are fitted to the held-out "
+        f"recordings: {listed(changes)}. The machine itself was another one then, as by temperature or wear."
+    )
+    return tag("p", text)
 
 
 def _nothing(outcome: "Outcome") -> Html:

@@ -93,3 +93,33 @@ def test_what_was_learnt_fades_while_it_sticks_and_stays_within_reason() -> None
     for _ in range(10_000):
         observer.step(0.0, DT)
     assert abs(observer.bias) < 2.0
+
+
+def bent(observer: FrictionObserver) -> float:
+    """Force of the bristles [N]."""
+    return observer.z * observer.machine.bristle_stiffness
+
+
+def test_bristles_that_are_held_go_the_way_of_the_correction_or_stay() -> None:
+    observer = FrictionObserver(Machine())
+    observer.step(0.0, DT, 0.02)
+    before = observer.z
+    observer.step(-0.01, DT, 1e-6, held=True)
+    assert observer.z == before
+    observer.step(0.005, DT, 1e-6, held=True)
+    assert observer.z == pytest.approx(before + 5e-6 + 1e-9)
+    observer.step(-0.01, DT, 1e-6)
+    assert observer.z < before
+
+
+def test_one_that_waits_is_loaded_for_where_it_is_to_go_and_no_farther() -> None:
+    observer = FrictionObserver(Machine())
+    observer.step(0.0, DT, -0.03)
+    for _ in range(20):
+        observer.wait(0.05, DT, 0.01)
+    assert bent(observer) == pytest.approx(0.9 * observer.machine.coulomb_friction)
+    observer.step(0.0, DT, 0.02)
+    beyond = observer.z
+    observer.wait(0.0, DT, 0.01)
+    assert observer.z == beyond
+    assert not observer.sliding

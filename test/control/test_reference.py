@@ -64,3 +64,10 @@ def test_what_is_no_reference_is_refused(make: object) -> None:
 def test_a_move_longer_than_its_hold_is_refused() -> None:
     with pytest.raises(UsageError, match="longer than the hold"):
         moves([0.0, 1.0], 1.0, 2.0)
+
+
+def test_a_setpoint_goes_on_with_the_jerk_it_has() -> None:
+    later = Setpoint(0.1, 0.2, -0.3, 0.6).ahead(0.5)
+    assert later == pytest.approx((0.1 + 0.1 - 0.0375 + 0.0125, 0.2 - 0.15 + 0.075, 0.0, 0.6))
+    wave = sine(0.3, 0.05)
+    assert wave(4.0).ahead(0.1).position == pytest.approx(wave(4.1).position, abs=1e-7)

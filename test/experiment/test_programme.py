@@ -115,6 +115,7 @@ def test_a_file_keeps_a_programme(tmp_path: Path) -> None:
         ("return_left: 1.2\n", "", "return_left is None"),
         ("constant: 1.1", "constant: 11.0", "one is 11 V"),
         ("constant: 1.1", "constant: .nan", "trial 'one': constant is nan"),
+        ("name: one", f"name: {3000 * 'one '}", "one one one': its recording needs a plain file name"),
         ("constant: 1.1", "volts: 1.1", "unknown entry 'volts'"),
         ("constant: 1.1", "constant: 1.1, steps: [[1.0, 1.0]]", "takes one of"),
         ("steps: [[0.5, 1.0], [1.0, -2.0]]", "steps: []", "trial 'two': steps is []"),

@@ -17,6 +17,8 @@ from pneumo_ros.records import Recording
 POSITION_NOISE, QUANTUM, PRESSURE_NOISE = 5e-6, 1e-5, 300.0
 POSITION_FLOOR = float(np.hypot(POSITION_NOISE, QUANTUM / np.sqrt(12.0)))
 
+FRICTION = ("lugre_friction.static_friction", "lugre_friction.coulomb_friction")
+
 # the rig's names of what wears
 PARAMETERS = {
     "dead_zone.right_limit": "dead_right",
@@ -45,10 +47,11 @@ def voltage(kind: str, time: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def own(
-    kind: str, sample_time: float = 1e-3, noisy: bool = True, seconds: float = 20.0
+    kind: str, sample_time: float = 1e-3, noisy: bool = True, seconds: float = 20.0, friction: float = 1.0
 ) -> tuple[Model, np.ndarray, Run]:
-    """The default machine, its true states (n, 5) and the run its sensors show."""
+    """The default machine, with `friction` times its own, its true states (n, 5) and the run its sensors show."""
     model, rng = load_model(), np.random.default_rng(0)
+    model = model.with_parameters({name: friction * model[name] for name in FRICTION})
     time = np.arange(round(seconds / sample_time)) * sample_time
     held = np.repeat(voltage(kind, time)[:-1], PARTS)
     start = model.state(p_a=3e5, p_b=3.9e5)
