@@ -5,6 +5,7 @@
 # make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
 # make endurance  24 h of simulated and 20 min of real time; ENDURANCE="--hours 1 --minutes 2" for less
 # make supply     wheel and archive installed and run in empty environments, licences; PYTHONS="python3.10 python3.13"
+# make pythons    the tests that compute on Python 3.10 and 3.13 as well, where they are installed
 #
 # Each sets up what it needs, once: a virtual environment in .venv. Nothing is written outside this folder and $ROS_HOME
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
@@ -39,7 +40,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench fuzz chaos endurance supply clean
+.PHONY: help demo test bench fuzz chaos endurance supply pythons clean
 .DELETE_ON_ERROR:
 
 help:
@@ -78,5 +79,8 @@ endurance: $(READY) | .cache/tmp
 supply: $(READY) | .cache/tmp
 	$(BIN)/python tools/supply.py $(if $(PYTHONS),--python $(PYTHONS))
 
+pythons: $(READY)
+	@tools/other_pythons $(MAKE)
+
 clean:
-	rm -rf $(VENV) .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info
+	rm -rf $(VENV) .venv-3.* .cache .mypy_cache .pytest_cache .ruff_cache build dist install log demo_output *.egg-info

@@ -4,8 +4,9 @@
 
 For every Python named (by default this one) wheel and archive are built, installed with what they depend on, and
 `pneumo` simulates and records away from the checkout. Then every distribution that was installed is listed with the
-licence it declares. The exit code is 1 when something did not run, or a licence is none of those known to go with
-Apache-2.0.
+licence it declares, and `pip-audit` asks for known vulnerabilities of these versions, where its service is reachable.
+The exit code is 1 when something did not run, a licence is none of those known to go with Apache-2.0, or there are
+known vulnerabilities.
 """
 
 import argparse
@@ -76,8 +77,23 @@ def check(python: str, artifact: Path, folder: Path) -> list[tuple[str, str, str
     return [tuple(one) for one in json.loads(run(venv / "bin" / "python", "-c", ASK, folder=place))]
 
 
+def audit(found: set[tuple[str, str, str]], folder: Path) -> dict[str, list[str]] | None:
+    """Known vulnerabilities by distribution, of those that the service knows; None when it cannot be asked."""
+    venv, wanted = folder / "audit", folder / "installed.txt"
+    wanted.write_text("".join(f"{name}=={version}\n" for name, version, _ in sorted(found) if name != "pneumo_ros"))
+    try:
+        run(sys.executable, "-m", "venv", venv, folder=folder)
+        run(venv / "bin" / "python", "-m", "pip", "install", "-q", "pip-audit", folder=folder)
+        command = [venv / "bin" / "pip-audit", "-r", wanted, "--no-deps", "--disable-pip", "-f", "json"]
+        said = subprocess.run([*map(str, command)], cwd=folder, env=CLEAN, capture_output=True, text=True).stdout
+        answered = [one for one in json.loads(said)["dependencies"] if "skip_reason" not in one]
+    except (subprocess.CalledProcessError, ValueError):  # it ends with 1 for vulnerabilities, and then says them
+        return None
+    return {f"{one['name']} {one['version']}": [v["id"] for v in one["vulns"]] for one in answered} or None
+
+
 def main() -> int:
-    """Build, install, run, list; 1 when something failed."""
+    """Build, install, run, list, ask; 1 when something failed."""
     good, found = True, set[tuple[str, str, str]]()
     with tempfile.TemporaryDirectory(prefix="pneumo_ros_supply_") as name:
         folder = Path(name)
@@ -90,12 +106,20 @@ def main() -> int:
                 except subprocess.CalledProcessError as error:
                     said, good = f"FAILED: {Path(str(error.cmd[0])).name} {' '.join(map(str, error.cmd[1:]))}", False
                 print(f"{artifact.name:40s} {Path(python).name:12s} {said}", flush=True)
+        audited = audit(found, folder)
     print(f"\n{'distribution':24s} {'version':14s} licence")
     for distribution, version, licence in sorted(found):
         known = bool(re.search(LICENCES, licence))
         good &= known
         print(f"{distribution:24s} {version:14s} {licence or '-'}{'' if known else '   UNKNOWN'}")
-    return int(not good)
+    if audited is None:
+        print("\nknown vulnerabilities: not asked for, pip-audit or its service cannot be reached from here")
+        return int(not good)
+    bad = {name: known for name, known in audited.items() if known}
+    print(f"\nknown vulnerabilities: {sum(map(len, bad.values()))}, in {len(audited)} distributions asked for")
+    for name, known in bad.items():
+        print(f"{name}: {', '.join(known)}")
+    return int(not good or bool(bad))
 
 
 if __name__ == "__main__":
