@@ -27,7 +27,7 @@ def found(law: str) -> Control:
     def make(gains: Mapping[str, float]) -> Law:
         return Control(law, {**begin.gains, **gains}, begin.smoothing).make(AXIS.effects, AXIS.parameters)
 
-    search = Search(make, costs_here(make, [ALONE]), EVALUATIONS)
+    search = Search(make({}), costs_here(make, [ALONE]), EVALUATIONS)
     gains = search.run()
     print(f"{law}: cost {search.first:.3f} -> {search.least:.3f}")
     return Control(law, {**begin.gains, **gains}, begin.smoothing)

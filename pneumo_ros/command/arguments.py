@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from pneumo_ros.errors import UsageError
@@ -81,6 +82,20 @@ def add_output(parser: argparse.ArgumentParser) -> None:
     """--json and --quiet."""
     parser.add_argument("--json", metavar="FILE", help="write the results as JSON too; - for stdout, instead of text")
     parser.add_argument("--quiet", action="store_true", help="no messages and no progress")
+
+
+def add_executor(parser: argparse.ArgumentParser) -> None:
+    """--executor."""
+    from pneumo_ros.sweep.executors import FORMS
+
+    parser.add_argument("--executor", metavar="NAME", default="processes", help=f"{FORMS} (default: processes)")
+
+
+def model_for_workers(options: argparse.Namespace) -> tuple[str, tuple[str, ...]]:
+    """--model and --effects as another process finds them, wherever it works: a file or shipped name, and files."""
+    own = Path(options.model)
+    model = str(own.resolve()) if own.is_file() else str(options.model)
+    return model, tuple(str(Path(path).resolve()) for path in options.effects)
 
 
 def chosen_model(options: argparse.Namespace) -> "Model":

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pneumo_ros.command.console import columns
-from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, VARIABLES, amount, number, percent, times
+from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, VARIABLES, amount, machine_changed, number, percent, times
 
 SHOWN = 4  # refused candidates
 REASONS = 2  # of each
@@ -167,14 +167,8 @@ def _between(moved: Mapping[str, Any] | None) -> str:
     """That the machine itself changed between the recordings, where most of what remains is that."""
     if moved is None:
         return ""
-    changes = [
-        f"{name} {number(one['before'], 4)} -> {number(one['after'], 4)} {one['unit']}".rstrip()
-        for name, one in moved["parameters"].items()
-    ]
-    return (
-        f"\n{percent(moved['share'])} of that is gone once the model's own parameters are fitted to the held-out "
-        f"recordings: {', '.join(changes)}. The machine itself was another one then, as by temperature or wear."
-    )
+    values = {name: (one["before"], one["after"], one["unit"]) for name, one in moved["parameters"].items()}
+    return "\n" + machine_changed(moved["share"], values)
 
 
 def _left(result: Mapping[str, Any]) -> str:

@@ -14,7 +14,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_executor, add_model, add_output, chosen_model, model_for_workers
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.fleet_text import text
 from pneumo_ros.command.reporting import add_report, prepare_report
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """FOLDER, how to compute, and the common options."""
-    from pneumo_ros.sweep.executors import FORMS
-
     parser.add_argument("folder", metavar="FOLDER", help="with a folder for each machine")
-    parser.add_argument("--executor", metavar="NAME", default="processes", help=f"{FORMS} (default: processes)")
+    add_executor(parser)
     parser.add_argument("--results", metavar="FILE", help="keep what is computed, and do not compute it again")
     parser.add_argument("--identify-only", action="store_true", help="look for no effects: much faster")
     add_model(parser)
@@ -72,9 +70,9 @@ def _examined(
     from pneumo_ros.fleet.examine import examine
     from pneumo_ros.sweep import open_pool, sweep
 
-    effects = [str(Path(path).resolve()) for path in options.effects]
+    model, effects = model_for_workers(options)
     by_key = {campaign.fingerprint: campaign for campaign in found}
-    jobs = {key: (_paths(c), _model(c, options), effects, not options.identify_only) for key, c in by_key.items()}
+    jobs = {key: (_paths(c), _model(c, model), effects, not options.identify_only) for key, c in by_key.items()}
     results = {}
     with open_pool(options.executor) as pool, console.progress("Examining") as progress:
         for done in sweep(examine, jobs, pool, journal):
@@ -94,11 +92,8 @@ def _paths(campaign: "Campaign") -> list[str]:
     return [str(path.resolve()) for path in campaign.paths]
 
 
-def _model(campaign: "Campaign", options: argparse.Namespace) -> str:
-    if campaign.machine_file is not None:
-        return str(campaign.machine_file.resolve())
-    own = Path(options.model)
-    return str(own.resolve()) if own.is_file() else str(options.model)
+def _model(campaign: "Campaign", other: str) -> str:
+    return other if campaign.machine_file is None else str(campaign.machine_file.resolve())
 
 
 def _journal(options: argparse.Namespace) -> "Journal":

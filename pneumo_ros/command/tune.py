@@ -2,10 +2,10 @@
 
 import argparse
 import math
-from collections.abc import Mapping
+from dataclasses import astuple
 from typing import TYPE_CHECKING
 
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_executor, add_model, add_output, chosen_model, model_for_workers
 from pneumo_ros.command.console import Console, columns, program
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
@@ -14,7 +14,6 @@ from pneumo_ros.nearest import unknown_name
 if TYPE_CHECKING:
     from pneumo_ros.command.trials import Task
     from pneumo_ros.control.control_file import Control
-    from pneumo_ros.control.law import Law
     from pneumo_ros.control.tuning import Search
     from pneumo_ros.plant import Model
 
@@ -23,8 +22,6 @@ EVALUATIONS = 80
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--law, --out and what is to be followed."""
-    from pneumo_ros.sweep.executors import FORMS
-
     parser.add_argument("--law", metavar="NAME", help="pid, pva, cascade (default) or sliding_mode")
     parser.add_argument("--out", required=True, metavar="FILE", help="control file to write")
     parser.add_argument("--control", metavar="FILE", help="control file to start from (default: the law's defaults)")
@@ -35,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--spool", type=float, metavar="RAD/S", help=slow)
     runs = f"how often to try gains, of which each try is four runs (default: {EVALUATIONS})"
     parser.add_argument("--evaluations", type=int, default=EVALUATIONS, metavar="N", help=runs)
-    parser.add_argument("--executor", metavar="NAME", default="processes", help=f"{FORMS} (default: processes)")
+    add_executor(parser)
     add_model(parser)
     add_output(parser)
 
@@ -79,12 +76,8 @@ def _start(options: argparse.Namespace) -> "Control":
 
 def _search(options: argparse.Namespace, start: "Control", model: "Model", task: "Task", console: Console) -> "Search":
     from pneumo_ros.command.tuning import costs_over
-    from pneumo_ros.control.control_file import Control
     from pneumo_ros.control.tuning import Search
     from pneumo_ros.sweep import open_pool
-
-    def make(gains: Mapping[str, float]) -> "Law":
-        return Control(start.law, {**start.gains, **gains}, start.smoothing).make(model.effects, model.parameters)
 
     console.note(
         f"Tuning {start.law} for {model.name}: sine of {task.amplitude:g} m, {task.frequency:.3g} Hz, and moves of "
@@ -92,8 +85,8 @@ def _search(options: argparse.Namespace, start: "Control", model: "Model", task:
     )
     with open_pool(options.executor) as pool, console.progress("Tuning") as progress:
         search = Search(
-            make,
-            costs_over(pool, start, task, options),
+            start.make(model.effects, model.parameters),
+            costs_over(pool, start, (*model_for_workers(options), astuple(task), options.spool)),
             options.evaluations,
             lambda count, _: progress(count / options.evaluations),
         )

@@ -74,18 +74,17 @@ class Search:
 
     def __init__(
         self,
-        make: Callable[[Gains], Law],
+        begin: Law,
         costs: Costs,
         evaluations: int = 60,
         told: Callable[[int, float], object] = lambda count, least: None,
     ) -> None:
-        """`make` turns gains into the law, `costs` says what several sets of gains cost, such as `costs_here`; `told`
-        hears the number of evaluations so far and the least cost.
+        """`begin` has the gains to start from; `costs` says what several sets of gains cost, such as `costs_here`;
+        `told` hears the number of evaluations so far and the least cost.
         """
         self._costs, self._told = costs, told
         self.evaluations, self.count = evaluations, 1
-        law = make({})
-        self._kind, self.gains = type(law), {name: float(getattr(law, name)) for name in law.tuned}
+        self._kind, self.gains = type(begin), {name: float(getattr(begin, name)) for name in begin.tuned}
         (self.least,) = costs([self.gains])
         self.first = self.least
 

@@ -36,12 +36,13 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
 
     Each may move by what is known of it. None where less than half of what remains is gone, or nothing remains.
     """
-    other = fit_base(fitter.held, model, _own(fitter, model))
+    own = _own(fitter, model)
+    other = fit_base(fitter.held, model, own)
     before, after = (_beyond_noise(m, fitter.held.runs, equation) for m in (model, other))
     share = 1.0 - after / max(before, REMAINING)
     if share < MOSTLY or before < REMAINING:
         return None
-    changed = {n: (model[n], other[n], model.specification(n).unit) for n in _own(fitter, model).names}
+    changed = {n: (model[n], other[n], model.specification(n).unit) for n in own.names}
     return Moved(share, {n: v for n, v in changed.items() if abs(v[1] - v[0]) > NAMED * abs(v[0])})
 
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, number, percent, times
+from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, machine_changed, number, percent, times
 from pneumo_ros.report.chart import Chart, Section
 from pneumo_ros.report.markup import Html, tag
 from pneumo_ros.report.naming import equation_words, listed, sentence, the
@@ -31,16 +31,7 @@ def remains_section(outcome: "Outcome", experiment: str) -> Section:
 
 def _between(left: "Unexplained") -> Html:
     """That the machine itself changed between the recordings, where most of what remains is that."""
-    if left.moved is None:
-        return Html()
-    changes = [
-        f"{n} {number(one)} to {number(two)} {unit}".rstrip() for n, (one, two, unit) in left.moved.parameters.items()
-    ]
-    text = (
-        f"{percent(left.moved.share)} of it is gone once the model's own parameters are fitted to the held-out "
-        f"recordings: {listed(changes)}. The machine itself was another one then, as by temperature or wear."
-    )
-    return tag("p", text)
+    return tag("p", machine_changed(left.moved.share, left.moved.parameters)) if left.moved else Html()
 
 
 def _nothing(outcome: "Outcome") -> Html:

@@ -16,8 +16,8 @@ from ros.processes import Running, running
 
 from chaos.disks import small_disk
 from chaos.field import ANSWER, Field, hold
+from chaos.processes import PAUSE
 
-PAUSE = 0.7  # s that it is stopped
 MANY = 40  # connections that are opened and never say anything
 
 
@@ -38,6 +38,11 @@ class Page:
         assert found, process.said
         self.process, self.port, self.token = process, int(found[1]), found[2]
         self.desk = self.ask(f"/?token={self.token}").leads
+
+    @property
+    def uploads(self) -> str:
+        """Where its desk takes recordings."""
+        return f"/upload/{self.desk.rpartition('/')[2]}"
 
     def ask(self, path: str, method: str = "GET", body: bytes | None = None) -> Answer:
         """What it answers to one who knows the token."""
@@ -74,7 +79,7 @@ def kill_workbench(field: Field) -> None:
     """kill -9 with an upload under way: the nodes do not mind, and the next one finds its recordings again."""
     bag = field.folder / "shown.mcap"
     bag.write_bytes(mcap_seeds()[0])
-    with page(field, bag) as first, _begun(first, first.desk.rpartition("/")[2]):
+    with page(field, bag) as first, _begun(first):
         first.process.process.kill()
         first.process.process.wait(ANSWER)
     hold(bag.read_bytes() == mcap_seeds()[0], "a recording was changed")
@@ -83,17 +88,17 @@ def kill_workbench(field: Field) -> None:
 
 
 @contextmanager
-def _begun(shown: Page, desk: str) -> Iterator[None]:
+def _begun(shown: Page) -> Iterator[None]:
     """An upload of which half has been sent."""
     with socket.create_connection(("127.0.0.1", shown.port), timeout=ANSWER) as line:
-        head = f"PUT /upload/{desk}/half.mcap HTTP/1.1\r\nHost: 127.0.0.1:{shown.port}\r\nContent-Length: 1000000\r\n"
+        head = f"PUT {shown.uploads}/half.mcap HTTP/1.1\r\nHost: 127.0.0.1:{shown.port}\r\nContent-Length: 1000000\r\n"
         cookie = f"Cookie: pneumo_workbench_{shown.port}={shown.token}\r\n\r\n"
         line.sendall((head + cookie).encode() + bytes(500_000))
         yield
 
 
 def stopped_workbench(field: Field) -> None:
-    """Stopped for a while with a question open: it is answered afterwards."""
+    """Stopped for a while, as a debugger does: it answers afterwards."""
     with page(field) as opened:
         opened.process.process.send_signal(signal.SIGSTOP)
         time.sleep(PAUSE)
@@ -111,7 +116,7 @@ def rubbish_on_the_line(field: Field) -> None:
         for line, data in zip(lines, sent, strict=False):
             with suppress(OSError):  # it may hang up before all is said
                 line.sendall(data)
-        with _begun(opened, opened.desk.rpartition("/")[2]):
+        with _begun(opened):
             pass
         opened.shown()
         for line in lines:
@@ -128,9 +133,8 @@ def damaged_recordings(field: Field) -> None:
     given = field.folder / "given.mcap"
     given.write_bytes(damaged.pop())
     with page(field, given) as opened:
-        desk = opened.desk.rpartition("/")[2]
         for number, data in enumerate(damaged):
-            answer = opened.ask(f"/upload/{desk}/run_{number}/bag.mcap", "PUT", data)
+            answer = opened.ask(f"{opened.uploads}/run_{number}/bag.mcap", "PUT", data)
             hold(answer.status in (204, 400), f"an upload: {answer.status} {answer.body[:200]!r}")
         opened.shown()
 
@@ -138,9 +142,9 @@ def damaged_recordings(field: Field) -> None:
 def full_disk_workbench(field: Field) -> None:
     """The disk fills with uploads: refused in words, nothing half, and the page goes on."""
     with small_disk(field.folder, 4 << 20) as disk, page(field, TMPDIR=str(disk)) as opened:
-        desk, statuses = opened.desk.rpartition("/")[2], []
+        statuses = []
         for number in range(12):
-            answer = opened.ask(f"/upload/{desk}/run_{number}/bag.mcap", "PUT", bytes(1 << 20))
+            answer = opened.ask(f"{opened.uploads}/run_{number}/bag.mcap", "PUT", bytes(1 << 20))
             statuses.append(answer.status)
             hold(answer.status in (204, 400, 507), f"an upload: {answer.status} {answer.body[:200]!r}")
             hold(answer.status == 204 or len(answer.body) > 20, "an upload was refused without a word")

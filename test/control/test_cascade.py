@@ -10,7 +10,6 @@ from pneumo_ros.control.reference import moves, sine
 
 SINE = sine(0.3, 0.05)
 MOVES = moves([0.0, 0.06, 0.0, -0.06], 5.0, 1.0)
-BRISTLES = 2.0 * AXIS["lugre_friction.static_friction"] / AXIS["lugre_friction.bristle_stiffness"]  # m, of both ways
 
 
 def rms(name: str, plant=AXIS, known=AXIS, seconds: float = 25.0, **gains: float) -> float:
@@ -55,9 +54,9 @@ def test_a_better_machine_file_tracks_better() -> None:
 
 
 def test_no_hunting_even_where_it_cannot_get_there() -> None:
-    """A tolerance below what sensors and stiction allow: it tries some times, then no slip comes any more."""
-    record = follow(law_for("cascade", tolerance=1e-6), moves([0.0, 0.06], 30.0, 1.0), 60.0)
-    assert np.ptp(record.states[-10_000:, 0]) < BRISTLES
+    """A tolerance below what sensors and stiction allow: it tries some times, then it rests, within a minute."""
+    record = follow(law_for("cascade", tolerance=1e-6), moves([0.0, 0.06], 60.0, 1.0), 120.0)
+    assert np.ptp(record.states[-10_000:, 0]) < 5e-5
     assert np.abs(record.states[-1, 0] - 0.06) < 1e-3
 
 

@@ -33,7 +33,7 @@ def test_it_finds_better_gains_and_repeats() -> None:
 
     told: list[tuple[int, float]] = []
     searches = [
-        Search(law, costs_here(law, TRIALS), 14, lambda count, least: told.append((count, least))) for _ in range(2)
+        Search(law({}), costs_here(law, TRIALS), 14, lambda count, least: told.append((count, least))) for _ in range(2)
     ]
     found = [search.run() for search in searches]
     assert found[0] == found[1]
@@ -47,7 +47,7 @@ def test_only_tuned_gains_move_within_their_ranges() -> None:
     def law(gains: Gains) -> Law:
         return law_for("pid", **gains)
 
-    gains = Search(law, costs_here(law, TRIALS[1:]), 8).run()
+    gains = Search(law({}), costs_here(law, TRIALS[1:]), 8).run()
     assert set(gains) == set(Pid.tuned)
     assert all(Pid.gains[name].low <= value <= Pid.gains[name].high for name, value in gains.items())
 

@@ -86,11 +86,9 @@ def test_continuous_integration_runs_what_a_developer_runs() -> None:
 
 
 def test_other_pythons_are_told_of_where_there_are_none(tmp_path: Path) -> None:
-    (tmp_path / "bin").mkdir()
     done = subprocess.run(
         [str(ROOT / "tools" / "other_pythons"), "make"], cwd=tmp_path, capture_output=True, text=True,
-        env={**os.environ, "PATH": "/usr/bin:/bin", "PYENV_ROOT": str(tmp_path)},
+        env={"PATH": str(tmp_path), "PYENV_ROOT": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    missing = [v for v in ("3.10", "3.13") if not shutil.which(f"python{v}", path="/usr/bin:/bin")]
-    assert all(f"Python {version} is not installed" in done.stdout for version in missing)
+    assert all(f"Python {version} is not installed" in done.stdout for version in ("3.10", "3.13"))

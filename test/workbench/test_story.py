@@ -27,9 +27,8 @@ def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> No
     tab.tick(LEAK.replace("_", " "))
     tab.press("Refit")
     tab.see("#job-says", "left")
-    tab.see(
-        "#error-content figcaption", LEAK.replace("_", " ")
-    )  # the waterfall of the machine as given may still stand there
+    # until then the waterfall of the machine as given may stand there
+    tab.see("#error-content figcaption", LEAK.replace("_", " "))
     given, refitted, after, *_ = errors(tab)
     assert tab.clicks < 10
     assert after < 1.5
