@@ -35,6 +35,10 @@ TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
     "payload_mass": {"mass_added": lambda m: m["payload"]},
     "constant_load": {"load": lambda m: m["load"]},
     "spring_load": {"stiffness": lambda m: m["spring"], "rest_position": lambda m: m["spring_centre"]},
+    "spring_load:hardening": {
+        "stiffness": lambda m: m["spring"],
+        "hardening": lambda m: m["spring_hardening"] / 0.3**2,
+    },
     "load_compliance": {
         "load_share": lambda m: m["load_share"],
         "frequency": _load_frequency,

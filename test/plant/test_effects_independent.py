@@ -32,7 +32,10 @@ SAME = {
     ),
     "payload_mass": ({"payload": 8.0}, {"mass_added": 8.0}),
     "constant_load": ({"load": 30.0}, {"load": 30.0}),
-    "spring_load": ({"spring": 100.0, "spring_centre": 0.1}, {"stiffness": 100.0, "rest_position": 0.1}),
+    "spring_load": (
+        {"spring": 100.0, "spring_centre": 0.1, "spring_hardening": 0.18},
+        {"stiffness": 100.0, "rest_position": 0.1, "hardening": 2.0},
+    ),
     "load_compliance": (
         {"load_share": 0.4, "coupling": 2.0 * OMEGA**2, "coupling_damping": 2.0 * 0.1 * OMEGA},
         {"load_share": 0.4, "frequency": 15.0, "damping_ratio": 0.05},

@@ -28,6 +28,12 @@ def test_spring_load_is_hookes() -> None:
     assert forces == pytest.approx([-0.6 * STIFFNESS, 0.0, 0.7 * STIFFNESS], rel=1e-9, abs=1e-9)
 
 
+def test_a_hardening_spring_is_duffings() -> None:
+    given = {"stiffness": STIFFNESS, "rest_position": OFFSET, "hardening": 2.0}
+    forces = [seen("spring_load", "force", given, y=y) - 11.0 for y in (-0.4, OFFSET, 0.9)]
+    assert forces == pytest.approx([-0.6 * STIFFNESS * 1.72, 0.0, 0.7 * STIFFNESS * 1.98], rel=1e-9, abs=1e-9)
+
+
 def test_payload_is_felt_in_acceleration_alone() -> None:
     def rates(model: Model) -> np.ndarray:
         plain = in_python(model)

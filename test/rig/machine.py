@@ -68,7 +68,8 @@ class Machine(NamedTuple):
     load: float = 0.0
     spring: float = 0.0
     spring_centre: float = 0.0
-    spring_hardening: float = 0.0  # cubic part: share gained at 0.3 m
+    spring_hardening: float = 0.0  # share of its stiffness gained at 0.3 m
+    spring_power: float = 2.0  # of the way, with which it is gained
     load_share: float = 0.0  # share of the mass that hangs behind a coupling
     coupling: float = 0.0  # its stiffness [N/m]
     coupling_damping: float = 0.0

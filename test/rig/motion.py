@@ -25,7 +25,7 @@ def external(m: Machine, y: float) -> float:
     force = m.load
     if m.spring != 0.0:
         way = y - m.spring_centre
-        force += m.spring * way * (1.0 + m.spring_hardening * (way / 0.3) ** 2)
+        force += m.spring * way * (1.0 + m.spring_hardening * (abs(way) / 0.3) ** m.spring_power)
     if m.detent != 0.0:
         force += m.detent * sin(2.0 * pi * y / m.detent_pitch + m.detent_phase)
     return force

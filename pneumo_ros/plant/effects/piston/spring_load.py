@@ -4,14 +4,19 @@ from pneumo_ros.plant.effect import Effect, Parameter
 
 
 class SpringLoad(Effect):
-    """Linear spring between rod and frame, F = k (y - y_0), such as a hose or a balancing spring."""
+    """Spring between rod and frame, F = k x (1 + h x^2) with x = y - y_0, such as a hose or a balancing spring.
 
-    stiffness = Parameter(100.0, "N/m", "spring stiffness k", low=-1e5, high=1e5, neutral=0.0)
+    Linear with h = 0; a hose that is pulled straight hardens.
+    """
+
+    stiffness = Parameter(100.0, "N/m", "spring stiffness k where it is slack", low=-1e5, high=1e5, neutral=0.0)
     rest_position = Parameter(0.0, "m", "position y_0 at which the spring is slack", low=-20.0, high=20.0)
+    hardening = Parameter(0.0, "1/m2", "relative increase h of the stiffness", low=-0.2, high=1000.0)
 
-    source = "Hooke's law"
-    signature = "a force linear in position that does not flip with the direction of motion"
+    source = "Hooke's law; with a cubic term, Duffing 1918"
+    signature = "a force that grows with position and does not flip with the direction of motion"
 
-    def equations(y, stiffness, rest_position):
-        force = stiffness * (y - rest_position)
+    def equations(y, stiffness, rest_position, hardening):
+        x = y - rest_position
+        force = stiffness * x * (1.0 + hardening * x * x)
         return force
