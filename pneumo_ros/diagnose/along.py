@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.guess import HALF_WIDTH, smoothed
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.sensors import driven
-from pneumo_ros.identify.smooth import noise_gain
+from pneumo_ros.identify.smooth import HALF_WIDTH, noise_gain
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -32,10 +30,10 @@ class Along:
 
 def along(model: Model, run: Run) -> Along:
     """Drive the model's own states (bristles, spool) along the measured ones and look at its signals."""
-    frame = smoothed(run).frame[:, : 2 if model.force_driven else 4]
+    frame = run.smoothed.frame[:, : 2 if model.force_driven else 4]
     states, _ = driven(model, frame, run)
     held = np.append(run.held, run.held[-1])
-    spread = run_noise(run)["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
+    spread = run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
     return Along(
         run=run,
         velocity=states[:, 1],

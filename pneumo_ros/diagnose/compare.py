@@ -15,7 +15,6 @@ from pneumo_ros.diagnose.regimes import Mask, regimes
 from pneumo_ros.diagnose.shares import Share, by_regime, pooled
 from pneumo_ros.diagnose.sliding import FrictionPoints, friction_map
 from pneumo_ros.diagnose.verdicts import EquationVerdict, SignalError, judge_equations, judge_signal, root_mean_square
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.weak import Residual, equation_residuals
 from pneumo_ros.identify.windows import free_run, predict
@@ -105,7 +104,7 @@ def compare(
 
 def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
     """Windowed and free errors and the residuals of one run, and where they sit."""
-    noise = run_noise(run)
+    noise = run.noise
     windows, free = predict(model, run, horizon), free_run(model, run)
     rows = windows.start[:, None] + np.arange(1, windows.states.shape[1] + 1)
     predicted, course = on_grid(windows, len(run)), along(model, run)

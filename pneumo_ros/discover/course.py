@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from pneumo_ros.identify.breakaway import REST
 from pneumo_ros.identify.equations import centred
 from pneumo_ros.identify.guess import measured_frame
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.sensors import shifted, taken_back
 from pneumo_ros.plant import Model
@@ -43,7 +42,7 @@ def frame_of(run: Run, force_driven: bool) -> Frame:
 def resting(run: Run) -> NDArray[np.bool_]:
     """Samples (n,) within stretches of 0.15 s or more in which the position stays within its noise."""
     width = max(round(REST / run.sample_time), 2)
-    slip = _SLIP * run_noise(run)["position_m"]
+    slip = _SLIP * run.noise["position_m"]
     still = np.zeros(len(run), dtype=bool)
     if len(run) < width:
         return still

@@ -65,9 +65,10 @@ class Evidence:
 
     def residuals(self, model: Model, parameters: Array, threads: int = 2) -> Array:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals)."""
+        longest_first = sorted(self.courses, key=lambda course: -len(course.run))  # or the last one is waited for
         with ThreadPoolExecutor(threads) as pool:
-            parts = list(pool.map(lambda course: course.values(model, parameters), self.courses))
-        whole = np.concatenate(parts, axis=1) / self.noise
+            parts = {id(c): pool.submit(c.values, model, parameters) for c in longest_first}
+        whole = np.concatenate([parts[id(c)].result() for c in self.courses], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.verdicts import window_sizes
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.windows import predict
 from pneumo_ros.plant import Model
@@ -25,7 +24,7 @@ def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
     """By signal, the usual error over noise in windows of 1 s: the geometric mean of their rms."""
     logs: dict[str, list[Array]] = {}
     for run in runs:
-        noise = run_noise(run)
+        noise = run.noise
         for name, error in predict(model, run, HORIZON).errors.items():
             logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
     return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}

@@ -1,6 +1,7 @@
 """Effects tried on breakaways and reversals: begun at several sizes and shapes, fitted, judged by events held out."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,7 +68,8 @@ def try_candidates(
 
     `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
     """
-    begin = [(*_begin(alone, found, name), name) for name in names]
+    with ThreadPoolExecutor(2) as pool:
+        begin = list(pool.map(lambda name: (*_begin(alone, found, name), name), names))
     result = []
     for _, model, name in sorted(begin, key=lambda one: one[0])[:TRIED]:
         refit = _fit(alone, found, model, name, known)

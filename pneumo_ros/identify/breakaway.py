@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
@@ -39,7 +38,7 @@ class Breakaway:
 def find_breakaways(model: Model, run: Run) -> list[Breakaway]:
     """Every breakaway after a rest of at least 0.15 s, away from the ends of the stroke."""
     deflection = model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
-    slip = _SLIP * deflection + 6.0 * run_noise(run)["position_m"]
+    slip = _SLIP * deflection + 6.0 * run.noise["position_m"]
     rest, found, k = max(round(REST / run.sample_time), 2), [], 0
     force, y = holding_force(model, run), run.position
     while k + rest < len(y):

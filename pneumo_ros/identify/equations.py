@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.bump import Bump
-from pneumo_ros.identify.noise import noise_level, run_noise
+from pneumo_ros.identify.noise import noise_level
 from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.smooth import smooth
 from pneumo_ros.plant import Model
@@ -51,7 +51,7 @@ class Momentum:
 
     def noise(self, bump: Bump) -> Array:
         """Standard deviation (windows,) that sensor noise and sums over samples alone give."""
-        model, run, noise = self.model, self.run, run_noise(self.run)
+        model, run, noise = self.model, self.run, self.run.noise
         ones = np.ones(len(run))
         by_position = bump.noise([(bump.second, ones), (bump.first, self._steep)])
         parts = [noise["position_m"] * model["piston.mass"] * by_position]
@@ -94,7 +94,7 @@ class Chamber:
 
         `steep` (n,): derivative of the claimed pressure derivative by the pressure.
         """
-        noise, p = run_noise(run), states[:, self.column]
+        noise, p = run.noise, states[:, self.column]
         by_log = steep / p - pressure_rate / p**2
         by_volume = self.gamma * self._slope / self.volume(states[:, 0])
         parts = [

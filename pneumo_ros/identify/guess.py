@@ -5,16 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.identify.sensors import driven
-from pneumo_ros.identify.smooth import noise_gain, smooth
+from pneumo_ros.identify.smooth import HALF_WIDTH, noise_gain, smooth
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-HALF_WIDTH = 0.012  # s, of the local polynomials
 # N, how far the balance of forces may be off: a piston that has just stopped rings on its bristle (84 Hz on the default
 # machine) with tens of newtons, which +-12 ms smooth away
 _FORCE = 10.0
@@ -22,25 +20,9 @@ _FORCE = 10.0
 _UNSURE = 0.3
 
 
-@dataclass(frozen=True)
-class Smoothed:
-    """First guesses along a whole run: measured states (n, 2 or 4) with smoothed velocity, and acceleration (n,)."""
-
-    frame: Array
-    acceleration: Array
-
-
-def smoothed(run: Run) -> Smoothed:
-    """Position, velocity, pressures and acceleration by local polynomials over +-12 ms."""
-    dt, y = run.sample_time, run.position
-    columns = [smooth(y, dt, HALF_WIDTH, 3), smooth(y, dt, HALF_WIDTH, 3, 1)]
-    columns += [smooth(p, dt, HALF_WIDTH, 2) for p in (run.pressure_a, run.pressure_b) if p is not None]
-    return Smoothed(np.stack(columns, axis=1), smooth(y, dt, 1.5 * HALF_WIDTH, 3, 2))
-
-
 def measured_frame(run: Run, force_driven: bool) -> Array:
     """Measured position and pressures with the smoothed velocity (n, 4); (n, 2) of a force-driven axis."""
-    frame: Array = smoothed(run).frame[:, : 2 if force_driven else 4].copy()
+    frame: Array = run.smoothed.frame[:, : 2 if force_driven else 4].copy()
     for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
         if column < frame.shape[1]:
             frame[:, column] = signal
@@ -67,13 +49,15 @@ def guess_states(model: Model, run: Run, at: Index) -> Guess:
     the model.
     """
     check_position(model, run)
-    guess = smoothed(run)
+    guess = run.smoothed
     frame = guess.frame[:, : 2 if model.force_driven else 4]
     states, _ = driven(model, frame, run)
     chosen: Array = states[at]
     if "z" in model.states:
-        late = smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)
-        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], (guess.acceleration + late)[at])
+        acceleration: Array = guess.acceleration[at]
+        if not model.composition.true_sensors:
+            acceleration += smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)[at]
+        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], acceleration)
     return Guess(chosen, _scale(model, run, states, frame))
 
 
@@ -98,7 +82,7 @@ def _deflection_limit(model: Model) -> float:
 
 def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
     """Standard deviation (states,) of each state about its first guess; of the measured ones, of what sensors read."""
-    noise = run_noise(run)
+    noise = run.noise
     with np.errstate(over="ignore", invalid="ignore"):
         scale: Array = np.maximum(np.nan_to_num(_UNSURE * np.std(states, axis=0), posinf=1.0), 1e-9)
         late = _UNSURE * np.std(states[:, 1] - frame[:, 1])

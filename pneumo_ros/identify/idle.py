@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError
-from pneumo_ros.identify.noise import noise_level, resolution, run_noise
+from pneumo_ros.identify.noise import noise_level, resolution
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 
@@ -43,7 +43,7 @@ def idle_notes(model: Model, run: Run) -> list[str]:
 
 def _check_alive(run: Run) -> None:
     """Raises DataError for a pressure that does not change, or shows noise alone, while the piston travels."""
-    noise, (out, back) = run_noise(run), _travel(run, 0)
+    noise, (out, back) = run.noise, _travel(run, 0)
     for name, signal in run.signals.items():
         fixed = np.ptp(signal) == 0.0 and max(out, back) > _TRAVEL
         # A steady motion one way leaves pressures alone; nobody comes back without changing them.
@@ -74,7 +74,7 @@ def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
     Between the samples `since` and `until` the position is known to hang.
     """
     width = min(max(round(_BLOCK / run.sample_time), 1), len(run))
-    still = _STILL + 6.0 * run_noise(run)["position_m"]
+    still = _STILL + 6.0 * run.noise["position_m"]
     blocks = run.position[: len(run) // width * width].reshape(-1, width).mean(axis=1)
     if np.ptp(blocks) < still:
         yield (

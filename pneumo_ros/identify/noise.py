@@ -5,13 +5,10 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.run import Run
-
 Array = NDArray[np.float64]
 
 _ORDER = 4  # differences: annihilate motion that is cubic over five samples
 _BLOCK = 100  # samples
-_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # no sensor of such a machine is better
 
 
 def noise_level(signal: Array) -> float:
@@ -38,8 +35,3 @@ def resolution(signal: Array) -> float:
     if len(levels) < 2 or len(levels) > len(signal) // 4:
         return 0.0
     return float(np.min(np.diff(levels)))
-
-
-def run_noise(run: Run) -> dict[str, float]:
-    """Noise level of every measured signal of a run, by its report name; at least 10 nm and 1 Pa, for simulations."""
-    return {name: max(noise_level(signal), _FINEST[name]) for name, signal in run.signals.items()}

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.breakaway import Breakaway, holding_force
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 
@@ -60,7 +59,7 @@ def _compliances(model: Model, run: Run, breakaways: Sequence[Breakaway]) -> lis
     """Deflection over force [m/N] and its deviation before each breakaway of a run that shows it."""
     if not breakaways:
         return []
-    force, noise = holding_force(model, run), run_noise(run)["position_m"]
+    force, noise = holding_force(model, run), run.noise["position_m"]
     found = (_compliance(run, force, noise, breakaway) for breakaway in breakaways)
     return [one for one in found if one]
 

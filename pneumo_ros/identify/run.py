@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.identify.noise import noise_level
+from pneumo_ros.identify.smooth import Smoothed, smoothed
 from pneumo_ros.plant import Model
 from pneumo_ros.records import Recording
 from pneumo_ros.records.unfit import check_use
@@ -15,6 +17,7 @@ Array = NDArray[np.float64]
 
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
+_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # no sensor of such a machine is better
 _MILLIMETRES = 20.0  # half strokes: farther, positions are in mm, or in nothing at all
 
 
@@ -55,6 +58,16 @@ class Run:
         """The measured signals by their name in reports: position_m, pressure_a_pa and pressure_b_pa."""
         every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
         return {name: signal for name, signal in every.items() if signal is not None}
+
+    @cached_property
+    def noise(self) -> dict[str, float]:
+        """Noise level of every measured signal, by its report name; at least 10 nm and 1 Pa, for simulations."""
+        return {name: max(noise_level(signal), _FINEST[name]) for name, signal in self.signals.items()}
+
+    @cached_property
+    def smoothed(self) -> Smoothed:
+        """Velocity and acceleration, and the measured states they go with, smoothed."""
+        return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
 
 
 def make_run(recording: Recording, force_driven: bool | None = None) -> Run:

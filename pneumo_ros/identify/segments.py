@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.guess import guess_states, measured_columns
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.model import STEP
@@ -176,7 +175,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
     measured, weight = [], []
     for run, begin in zip(runs, starts, strict=True):
         rows = begin[:, None] + np.arange(1, samples + 1)
-        noise = run_noise(run)
+        noise = run.noise
         measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
         weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
     counts = [len(begin) for begin in starts]

@@ -4,13 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.identify.run import PARTS, Run
-from pneumo_ros.identify.smooth import smooth
+from pneumo_ros.identify.smooth import HALF_WIDTH, smooth
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.sensing import sense
 
 Array = NDArray[np.float64]
 
-_HALF_WIDTH = 0.012  # s, of the local polynomials that differentiate a correction of position
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
 _ENOUGH = (1e-7, 1.0)  # m, Pa: a tenth of what any sensor of such a machine resolves
 
@@ -63,6 +62,6 @@ def shifted(frame: Array, shift: Array, sample_time: float) -> Array:
     """The frame (n, 2 or 4) with `shift` (n, 1 or 3) added to position and pressures, and its rate to the velocity."""
     moved: Array = frame.copy()
     moved[:, 0] += shift[:, 0]
-    moved[:, 1] += smooth(shift[:, 0], sample_time, _HALF_WIDTH, 3, 1)
+    moved[:, 1] += smooth(shift[:, 0], sample_time, HALF_WIDTH, 3, 1)
     moved[:, 2:] += shift[:, 1:]
     return moved

@@ -1,5 +1,6 @@
 """Velocity and acceleration from sampled positions, with a stated noise gain."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -7,6 +8,23 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs, savgol_filter
 
 Array = NDArray[np.float64]
+
+HALF_WIDTH = 0.012  # s, of the local polynomials
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """A recording smoothed: states (n, 2 or 4), which are y, v, p_a and p_b, and acceleration (n,)."""
+
+    frame: Array
+    acceleration: Array
+
+
+def smoothed(sample_time: float, position: Array, *pressures: Array | None) -> Smoothed:
+    """Position, velocity, pressures and acceleration by local polynomials over +-12 ms."""
+    columns = [smooth(position, sample_time, HALF_WIDTH, 3), smooth(position, sample_time, HALF_WIDTH, 3, 1)]
+    columns += [smooth(p, sample_time, HALF_WIDTH, 2) for p in pressures if p is not None]
+    return Smoothed(np.stack(columns, axis=1), smooth(position, sample_time, 1.5 * HALF_WIDTH, 3, 2))
 
 
 def smooth(signal: Array, sample_time: float, half_width: float, order: int, derivative: int = 0) -> Array:

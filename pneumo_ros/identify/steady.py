@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
 
@@ -122,7 +121,7 @@ def _forces(
 
 def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
     """Deviations by sensor noise of a window's friction force [N], velocity [m/s] and pressure slope [Pa/s]."""
-    noise, span = run_noise(run), width * run.sample_time
+    noise, span = run.noise, width * run.sample_time
     parts = [model["piston.mass"] * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
     if not model.force_driven:
         for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from identify.making import POSITION_FLOOR, PRESSURE_NOISE, QUANTUM, own, rig
 
-from pneumo_ros.identify.noise import noise_level, resolution, run_noise
+from pneumo_ros.identify.noise import noise_level, resolution
 
 TIME = np.arange(20_000) * 1e-3
 SINE = 0.3 * np.sin(2.0 * np.pi * 0.5 * TIME)
@@ -23,7 +23,7 @@ def test_white_noise_on_smooth_motion(sigma: float) -> None:
 @pytest.mark.parametrize("kind", ["steps", "sweep", "slow"])
 def test_white_noise_on_what_the_axis_does(kind: str) -> None:
     """Breakaways, reversals and stick, whose events differences do not remove."""
-    noise = run_noise(own(kind)[2])
+    noise = own(kind)[2].noise
     assert noise["position_m"] == pytest.approx(POSITION_FLOOR, rel=0.05)
     assert noise["pressure_a_pa"] == pytest.approx(PRESSURE_NOISE, rel=0.05)
     assert noise["pressure_b_pa"] == pytest.approx(PRESSURE_NOISE, rel=0.05)
@@ -32,7 +32,7 @@ def test_white_noise_on_what_the_axis_does(kind: str) -> None:
 @pytest.mark.parametrize("name", ["train_steps", "train_creep", "constant_p1100"])
 def test_recordings_of_the_rig_have_6_micrometres_and_300_pascals(name: str) -> None:
     """Its clock jitters, and laying the samples on a grid averages neighbours a little."""
-    noise = run_noise(rig(name)[2])
+    noise = rig(name)[2].noise
     assert noise["position_m"] == pytest.approx(POSITION_FLOOR, rel=0.06)
     assert noise["pressure_a_pa"] == pytest.approx(PRESSURE_NOISE, rel=0.06)
     assert noise["pressure_b_pa"] == pytest.approx(PRESSURE_NOISE, rel=0.06)
@@ -72,7 +72,7 @@ def test_nothing_to_see_is_a_small_positive_number(signal: np.ndarray) -> None:
 
 
 def test_a_simulation_without_noise_has_ten_nanometres_and_a_pascal_at_most() -> None:
-    noise = run_noise(own("steps", noisy=False, seconds=5.0)[2])
+    noise = own("steps", noisy=False, seconds=5.0)[2].noise
     assert 1e-8 <= noise["position_m"] < 1e-6
     assert 1.0 <= noise["pressure_a_pa"] < 10.0
 

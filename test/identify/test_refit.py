@@ -9,7 +9,6 @@ import pytest
 from identify.making import own, ratio, rig
 
 from pneumo_ros.errors import DataError, UsageError
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.refit import Refit, default_free, refit
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.windows import predict
@@ -48,7 +47,7 @@ def whole() -> tuple[Model, Model, Refit]:
 def scores(model: Model, name: str) -> Mapping[str, float]:
     """Errors over noise in one-second windows of the first 8 s of a run that was not fitted."""
     run = piece(rig(name, SEED)[2], 0.0, 8.0)
-    noise = run_noise(run)
+    noise = run.noise
     return {signal: ratio(errors, noise[signal]) for signal, errors in predict(model, run, 1.0).errors.items()}
 
 

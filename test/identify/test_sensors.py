@@ -8,8 +8,6 @@ import pytest
 from identify.making import own, ratio, rig
 from rig.effects import Wish, build
 
-from pneumo_ros.identify.guess import smoothed
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.refit import Refit, refit
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.segments import cut
@@ -65,7 +63,7 @@ def seen(effect: str) -> tuple[Model, np.ndarray, Run]:
 @pytest.mark.parametrize(("effect", "share"), [(OFFSET, 0.01), (GAIN, 0.01), (DELAY, 0.05), ("backlash", 0.5)])
 def test_what_the_sensors_did_is_taken_back(effect: str, share: float) -> None:
     model, states, run = seen(effect)
-    frame = smoothed(run).frame
+    frame = run.smoothed.frame
     column = 0 if effect in (DELAY, "backlash") else 3
     before, after = (one[:, column] - states[:, column] for one in (frame, corrected(model, frame, run)))
     assert ratio(after, 1.0) < share * ratio(before, 1.0)
@@ -73,14 +71,14 @@ def test_what_the_sensors_did_is_taken_back(effect: str, share: float) -> None:
 
 def test_the_velocity_behind_a_delay_is_that_of_later() -> None:
     model, states, run = seen(DELAY)
-    frame = smoothed(run).frame
+    frame = run.smoothed.frame
     before, after = (np.abs(one[:, 1] - states[:, 1]) for one in (frame, corrected(model, frame, run)))
     assert np.median(after) < 0.3 * np.median(before)
 
 
 def test_true_sensors_give_the_frame_back_and_drive_as_follow_does() -> None:
     model, _, run = own("steps", seconds=3.0)
-    frame = smoothed(run).frame
+    frame = run.smoothed.frame
     assert corrected(model, frame, run) is frame
     expected = model.follow(frame, run.input, model.state()[4:], parts=PARTS)
     np.testing.assert_array_equal(driven(model, frame, run), expected)
@@ -91,13 +89,13 @@ def test_neutral_sensors_correct_nothing() -> None:
     model = base
     for effect, values in SIZES.items():
         model = with_effect(model, effect, **dict.fromkeys(values, 0.0))
-    frame = smoothed(run).frame
+    frame = run.smoothed.frame
     np.testing.assert_array_equal(corrected(model, frame, run), frame)
 
 
 def position_and_pressures(model: Model, run: Run) -> tuple[float, float]:
     """Window errors in noise floors: of position, and the larger one of the pressures."""
-    noise = run_noise(run)
+    noise = run.noise
     found = {name: ratio(errors, noise[name]) for name, errors in predict(model, run, 1.0).errors.items()}
     return found["position_m"], max(found["pressure_a_pa"], found["pressure_b_pa"])
 

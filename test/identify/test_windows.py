@@ -8,7 +8,6 @@ from identify.making import own, ratio, rig
 
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.guess import first_guess
-from pneumo_ros.identify.noise import run_noise
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.windows import free_run, predict
 from pneumo_ros.plant import Model
@@ -18,7 +17,7 @@ KINDS = ["steps", "sweep", "slow"]
 
 def scores(model: Model, run: Run, horizon: float = 1.0) -> dict[str, float]:
     """Windowed errors in noise floors, by signal."""
-    noise = run_noise(run)
+    noise = run.noise
     return {name: ratio(errors, noise[name]) for name, errors in predict(model, run, horizon).errors.items()}
 
 
@@ -54,7 +53,7 @@ def test_smoothed_signals_alone_are_no_start(name: str) -> None:
         run.input, first_guess(model, run, starts), samples=1000, first=starts * PARTS, parts=PARTS
     )  # fmt: skip
     errors = ends[:, :, 0] - run.position[starts[:, None] + np.arange(1, 1001)]
-    assert ratio(errors, run_noise(run)["position_m"]) > 5.0 * scores(model, run)["position_m"]
+    assert ratio(errors, run.noise["position_m"]) > 5.0 * scores(model, run)["position_m"]
 
 
 def test_a_machine_off_by_five_per_cent_of_friction_does_not() -> None:
@@ -101,14 +100,14 @@ def test_a_free_run_starts_once_and_hides_gaps() -> None:
     errors = found.errors["position_m"]
     assert errors.shape == (1, 4999)
     assert np.flatnonzero(np.isnan(errors[0])).tolist() == list(range(1499, 1519))
-    assert ratio(errors, run_noise(run)["position_m"]) < 2.0
+    assert ratio(errors, run.noise["position_m"]) < 2.0
 
 
 def test_a_free_run_of_the_true_machine_stays_near_the_rig() -> None:
     """20 s of strokes: chambers and friction forget, and what remains of a start is a few micrometres."""
     model, _, run = rig("train_steps")
     found = free_run(model, run)
-    assert ratio(found.errors["position_m"], run_noise(run)["position_m"]) < 3.0
+    assert ratio(found.errors["position_m"], run.noise["position_m"]) < 3.0
 
 
 @pytest.mark.parametrize(
