@@ -1,5 +1,6 @@
 """`diagnose`: the search, judged on held-out runs, as one outcome."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.compare import Comparison, EquationVerdict, compare
 from pneumo_ros.discover.between import moved_between
+from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.discover.prediction import HORIZON, typical_error
 from pneumo_ros.discover.search import Progress, Search
@@ -22,6 +24,7 @@ Array = NDArray[np.float64]
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
 MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
 REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
+RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
 
 
 def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None) -> Outcome:
@@ -105,11 +108,14 @@ def noise_levels(comparison: Comparison) -> dict[str, float]:
 
 def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:
     assert step.added is not None
-    name = step.added.name
-    std, values = std | step.added.std, {}
+    name, std = step.added.name, std | step.added.std
+    sizes = {c.name: c.unit for c in coordinates(model.library.find(name)) if c.is_size}
+    values = {}
     for key, parameter in model.library.find(name).parameters.items():
         dotted = f"{name}.{key}"
-        values[key] = Value(model[dotted], std.get(dotted, float("inf")), parameter.unit)
+        kind = [dotted, *(n for n, unit in sizes.items() if dotted in sizes and unit == parameter.unit)]
+        ruler = RULER * max(abs(model[n]) for n in kind)
+        values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), ruler), parameter.unit)
     return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
 
 

@@ -7,7 +7,7 @@ import pytest
 from rig import bags, case, effects
 
 from pneumo_ros.command.revealing import judge
-from pneumo_ros.discover.diagnosis import diagnose
+from pneumo_ros.discover.diagnosis import RULER, diagnose
 from pneumo_ros.discover.outcome import Outcome
 from pneumo_ros.identify.run import PARTS, Run, make_run
 from pneumo_ros.plant import load_model
@@ -56,6 +56,8 @@ def test_a_hidden_effect_is_found(
     assert judge([name], [(a.effect, a.indistinguishable_from) for a in outcome.added]).right
     (found,) = [a for a in outcome.added if a.effect == name]
     assert found.parameters[key].value == pytest.approx(size, rel=0.05)
+    assert abs(found.parameters[key].value - size) < 3.0 * found.parameters[key].std
+    assert all(one.std > 0.9 * RULER * size for one in found.parameters.values())  # also of the chamber that is tight
     assert outcome.course[-1][1] < outcome.course[1][1]  # held-out error, in the end and of the refitted base
 
 
