@@ -60,6 +60,7 @@ TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
     "line_delay": {"delay": lambda m: m["line_delay"], "loss_pressure": lambda m: m["line_loss"]},
     "cross_piston_leakage": {"conductance": lambda m: m["cross"]},
     "leakage_to_atmosphere": {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]},
+    "heat_exchange:polytropic": {"share": lambda m: (1.4 - m["adiabatic"]) / 0.4},
     "dead_volume": {
         "volume_added_a": lambda m: m["volume_a"] - NEW_VOLUMES["volume_a"],
         "volume_added_b": lambda m: m["volume_b"] - NEW_VOLUMES["volume_b"],

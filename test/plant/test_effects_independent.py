@@ -22,6 +22,7 @@ SAME = {
         {"viscous_out": 30.0, "viscous_in": 100.0},
         {"coefficient_extension": 30.0, "coefficient_retraction": 100.0},
     ),
+    "heat_exchange": ({"adiabatic": 1.2}, {"rate": 0.0, "share": 0.5}),
     "pressure_dependent_friction": ({"seal": 8e-5}, {"coefficient": 8e-5}),
     "stribeck_shape": ({"stribeck_power": 0.7}, {"exponent": 0.7}),
     "friction_warmup": ({"warm_share": 0.3, "warm_fast": 1.0}, {"share": 0.3, "time_constant": 1.0}),

@@ -6,14 +6,15 @@ SLOWEST = 1.0  # 1/s: below it the effect fades into the base model, whose gas l
 
 
 def exchange(
-    p: float, V: float, work: float, q: float, theta: float, T: float, R: float, gamma: float, rate: float
+    p: float, V: float, work: float, q: float, theta: float, T: float, R: float, gamma: float, rate: float, share: float
 ) -> tuple[float, float]:
     """Heat into the gas of a chamber [W] and rate of change of theta [K/s]; work = p V'."""
     T_g = max(T + theta, 0.1 * T)
     excess = max(gamma - 1.0, 1e-9)  # at gamma = 1 heat makes no pressure
     kept = min(rate / SLOWEST, 1.0) * R * theta * min(q, 0.0)  # by gas that leaves colder than the base model says
-    heat = (gamma * kept - p * V * rate * theta / T_g) / excess
-    warming = (gamma * (R * T * q + kept) - (gamma - 1.0) * work - R * T_g * q) / (p * V)
+    at_once = share * (work - R * T * q - kept)
+    heat = (gamma * kept - p * V * rate * theta / T_g) / excess + at_once
+    warming = (gamma * (R * T * q + kept) - (gamma - 1.0) * (work - at_once) - R * T_g * q) / (p * V)
     return heat, T_g * warming - rate * theta
 
 
@@ -21,10 +22,12 @@ class HeatExchange(Effect):
     """Full balance of energy: the gas has a temperature T_g = T + theta of its own, which the wall takes back to T.
 
     With m = p V / (R T_g), Q = -m c_v theta / tau from the wall and gas that enters at T and leaves at T_g,
-    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V).
+    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). A share s of what gas and piston bring in
+    may go into the wall at once: with s alone the gas is polytropic, of the exponent n = gamma - s (gamma - 1).
     """
 
     rate = Parameter(4.0, "1/s", "rate 1/tau at which the gas takes the wall's temperature", 0.0, 1e3, neutral=0.0)
+    share = Parameter(0.0, "1", "share s of the heat that the wall takes at once", low=0.0, high=1.0, neutral=0.0)
 
     theta_a = State("K", "temperature of the gas in chamber a above the wall's")
     theta_b = State("K", "temperature of the gas in chamber b above the wall's")
@@ -34,13 +37,13 @@ class HeatExchange(Effect):
 
     def equations(
         y, v, p_a, p_b, theta_a, theta_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b,
-        area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio, rate,
+        area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio, rate, share,
     ):  # fmt: skip
         T, R, gamma = temperature, gas_constant, heat_capacity_ratio
         V_a = volume_a + added_volume_a + area_a * y
         V_b = volume_b + added_volume_b - area_b * y
         work_a, work_b = p_a * area_a * v, -p_b * area_b * v
-        heat_a, der_theta_a = exchange(p_a, V_a, work_a, port_flow_a + flow_a, theta_a, T, R, gamma, rate)
-        heat_b, der_theta_b = exchange(p_b, V_b, work_b, port_flow_b + flow_b, theta_b, T, R, gamma, rate)
+        heat_a, der_theta_a = exchange(p_a, V_a, work_a, port_flow_a + flow_a, theta_a, T, R, gamma, rate, share)
+        heat_b, der_theta_b = exchange(p_b, V_b, work_b, port_flow_b + flow_b, theta_b, T, R, gamma, rate, share)
         rate_theta_a, rate_theta_b = rate, rate
         return heat_a, heat_b, der_theta_a, der_theta_b, rate_theta_a, rate_theta_b
