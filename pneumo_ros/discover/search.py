@@ -1,7 +1,7 @@
 """The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -33,6 +33,17 @@ PROMISING = 3.0  # log likelihood that a candidate has to gain in the first rank
 SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
 MOST = 4  # effects added
 VANISHED = "nothing of it is left beside what was added since"
+UNHELPFUL = "predictions of held-out runs over 1 s get no better with it"
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """The candidates beside one model: what they start from, their trials, best first, and the first ranking of all."""
+
+    base: BaseFit
+    held: BaseFit
+    trials: list[Trial]
+    screened: list[Hypothesis]
 
 
 class Search:
@@ -47,6 +58,7 @@ class Search:
         # what is asked of a model again is kept
         self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
         self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
+        self.ranked = lru_cache(1)(self._ranked)
         self.left = 0.0  # N, root mean square of what is unexplained in the momentum equation
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
@@ -55,13 +67,13 @@ class Search:
         self.progress(0.05, "refitting what the model has")
         base = self.polish(self.fitter.refit(self.start))
         model, steps = base, list[Step]()
-        before, banned = self.predicted(base), dict[str, str]()
+        before, vanished = self.predicted(base), dict[str, str]()
+        refused = vanished  # beside this model: another one may make room for it
         try:
-            screened: list[Hypothesis] = []
-            while len(steps) <= MOST + len(banned):
+            while True:
                 k = len(model.effects) - len(base.effects)
                 self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
-                step, screened = self.round(model, banned)
+                step = self.round(model, refused)
                 if step.added is None or k == MOST:
                     steps.append(replace(step, added=None))
                     break
@@ -69,13 +81,14 @@ class Search:
                 new, gone = self.extended(model, step.added)
                 after = self.predicted(new)
                 if step.added.name in gone or not convinces(step.added, before, after):
-                    banned[step.added.name] = "predictions of held-out runs over 1 s get no better with it"
+                    refused = refused | {step.added.name: UNHELPFUL}
                     continue
-                banned |= dict.fromkeys(gone, VANISHED)
+                vanished = vanished | dict.fromkeys(gone, VANISHED)
+                refused = vanished
                 steps = [without(s, gone, VANISHED) for s in (*steps, step)]
                 model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
-            new, last = self.slip_round(model, screened)
+            new, last = self.slip_round(model, self.ranked(model).screened)
             if last is not None and last.added is not None and pays(before, self.predicted(new)):
                 steps[-1:] = [last, replace(steps[-1], model=new)]
                 model = new
@@ -123,7 +136,17 @@ class Search:
         first = model.effects == self.start.effects
         return longer(model, made, screened, self.fitter.deviations(model), first)
 
-    def round(self, model: Model, banned: Mapping[str, str]) -> tuple[Step, list[Hypothesis]]:
+    def round(self, model: Model, refused: Mapping[str, str]) -> Step:
+        """The candidates tried beside a model and the best of them, but for those `refused`, and why."""
+        ranked = self.ranked(model)
+        base, held = ranked.base, ranked.held
+        trials = [replace(t, refused=refused.get(t.name, "")) for t in ranked.trials]
+        best = simplest(base, held, [trial for trial in trials if not trial.objections])
+        others = rivals(base, held, best, trials) if best else []
+        scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
+        return Step(model, tuple(trials), best, tuple(others), scales[0], scales[1])
+
+    def _ranked(self, model: Model) -> Ranked:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fitter.fits(model)
         nothing = unaided(base)
@@ -134,13 +157,8 @@ class Search:
         self.first = self.first or now
         self.left = force(self.held, held.residual, np.zeros(len(self.held)))
         quiet = self.left <= TEXTURE * self.held.drive
-        trials = [
-            replace(t, refused=banned.get(t.name, ""), rest=remaining(t, self.first, now), quiet=quiet) for t in trials
-        ]
-        best = simplest(base, held, [trial for trial in trials if not trial.objections])
-        others = rivals(base, held, best, trials) if best else []
-        scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
-        return Step(model, tuple(trials), best, tuple(others), scales[0], scales[1]), screened
+        trials = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in trials]
+        return Ranked(base, held, trials, screened)
 
     def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
