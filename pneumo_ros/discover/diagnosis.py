@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
 MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
+LARGE = 0.05  # of the force that drives the piston, or of the flow: no law's shape is that far off
 REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
 
@@ -167,17 +168,21 @@ def excess(equation: EquationVerdict) -> float:
 
 
 def material(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether what remains matters: forces beyond 0.7 % of the drive, and no small rest of what was explained."""
-    first, last = before.equations[name], after.equations[name]
-    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * drive(after):
+    """Whether what remains matters: forces beyond 0.7 % of the drive, and much, or no small rest of what was there."""
+    first, last, whole = before.equations[name], after.equations[name], driving(after, name)
+    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
         return False
-    return excess(last) > REST * excess(first)
+    return excess(last) > REST * excess(first) or last.residual_rms > LARGE * whole
 
 
-def drive(comparison: Comparison) -> float:
-    """Root mean square of the force that drives the piston over all runs [N]."""
-    forces = [run.course.seen["drive"] - run.course.seen["force"] for run in comparison.runs]
-    return float(np.sqrt(np.mean(np.concatenate(forces) ** 2)))
+def driving(comparison: Comparison, equation: str) -> float:
+    """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
+    seen = [run.course.seen for run in comparison.runs]
+    if equation == "momentum":
+        parts = [one["drive"] - one["force"] for one in seen]
+    else:
+        parts = [one[f"port_flow_{equation[-1]}"] for one in seen]
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
 def verdict(added: Sequence[Addition], unexplained: Unexplained | None) -> str:
