@@ -34,6 +34,12 @@ def test_a_hardening_spring_is_duffings() -> None:
     assert forces == pytest.approx([-0.6 * STIFFNESS * 1.72, 0.0, 0.7 * STIFFNESS * 1.98], rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize(("hardening", "stiffer"), [(100.0, 10.0), (-100.0, 0.5)])
+def test_no_spring_changes_more_than_tenfold(hardening: float, stiffer: float) -> None:
+    given = {"stiffness": STIFFNESS, "rest_position": OFFSET, "hardening": hardening}
+    assert seen("spring_load", "force", given, y=0.9) - 11.0 == pytest.approx(0.7 * STIFFNESS * stiffer, rel=1e-9)
+
+
 def test_payload_is_felt_in_acceleration_alone() -> None:
     def rates(model: Model) -> np.ndarray:
         plain = in_python(model)
