@@ -22,7 +22,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-ITERATIONS = 8
+ITERATIONS = 8  # sets of slopes
 FAITHFUL = 0.8  # of the decrease that slopes promise: who keeps less asks for new ones
 
 

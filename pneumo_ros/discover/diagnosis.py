@@ -114,7 +114,7 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
     values = {}
     for key, parameter in model.library.find(name).parameters.items():
         dotted = f"{name}.{key}"
-        kind = [dotted, *(n for n, unit in sizes.items() if dotted in sizes and unit == parameter.unit)]
+        kind = [dotted, *(n for n, unit in sizes.items() if unit == sizes.get(dotted))]
         ruler = RULER * max(abs(model[n]) for n in kind)
         values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), ruler), parameter.unit)
     return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)

@@ -67,8 +67,8 @@ class Evidence:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals)."""
         longest_first = sorted(self.courses, key=lambda course: -len(course.run))  # or the last one is waited for
         with ThreadPoolExecutor(threads) as pool:
-            parts = {id(c): pool.submit(c.values, model, parameters) for c in longest_first}
-        whole = np.concatenate([parts[id(c)].result() for c in self.courses], axis=1) / self.noise
+            parts = {course: pool.submit(course.values, model, parameters) for course in longest_first}
+        whole = np.concatenate([parts[course].result() for course in self.courses], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
 
 

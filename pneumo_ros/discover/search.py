@@ -44,6 +44,7 @@ class Ranked:
     held: BaseFit
     trials: list[Trial]
     screened: list[Hypothesis]
+    quiet: bool  # whether no force of size is unexplained
 
 
 class Search:
@@ -59,7 +60,6 @@ class Search:
         self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
         self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
         self.ranked = lru_cache(1)(self._ranked)
-        self.left = 0.0  # N, root mean square of what is unexplained in the momentum equation
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
     def run(self) -> Found:
@@ -88,7 +88,7 @@ class Search:
                 steps = [without(s, gone, VANISHED) for s in (*steps, step)]
                 model, before = new, after
             self.progress(0.85, "looking at breakaways and reversals")
-            new, last = self.slip_round(model, self.ranked(model).screened)
+            new, last = self.slip_round(model)
             if last is not None and last.added is not None and pays(before, self.predicted(new)):
                 steps[-1:] = [last, replace(steps[-1], model=new)]
                 model = new
@@ -125,16 +125,16 @@ class Search:
         before, after = windowed(model, self.train.runs), windowed(new, self.train.runs)
         return new if all(after[name] <= before[name] for name in before) else model
 
-    def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
+    def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
 
         Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
         """
-        made = self.slips(model)
-        if made is None or self.left > TEXTURE * self.held.drive:
+        made, ranked = self.slips(model), self.ranked(model)
+        if made is None or not ranked.quiet:
             return model, None
         first = model.effects == self.start.effects
-        return longer(model, made, screened, self.fitter.deviations(model), first)
+        return longer(model, made, ranked.screened, self.fitter.deviations(model), first)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
         """The candidates tried beside a model and the best of them, but for those `refused`, and why."""
@@ -155,10 +155,9 @@ class Search:
         trials = self.tried(base, held, nothing, hypotheses, screened)
         now = excess(self.held, held.residual)
         self.first = self.first or now
-        self.left = force(self.held, held.residual, np.zeros(len(self.held)))
-        quiet = self.left <= TEXTURE * self.held.drive
+        quiet = force(self.held, held.residual, np.zeros(len(self.held))) <= TEXTURE * self.held.drive
         trials = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in trials]
-        return Ranked(base, held, trials, screened)
+        return Ranked(base, held, trials, screened, quiet)
 
     def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""

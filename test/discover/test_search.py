@@ -8,7 +8,7 @@ import numpy as np
 
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import Hypothesis
-from pneumo_ros.discover.search import UNHELPFUL, VANISHED, Ranked, Search
+from pneumo_ros.discover.search import UNHELPFUL, VANISHED, Search
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.plant import Model, load_model
@@ -36,7 +36,6 @@ class Played(Search):
         self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model))
         self.predicted = cast(Any, lambda model: {"position": errors[self.added(model)]})
         self.slips = cast(Any, lambda model: None)
-        self.ranked = cast(Any, lambda model: Ranked(cast(Any, None), cast(Any, None), [], []))
 
     @staticmethod
     def added(model: Model) -> frozenset[str]:
@@ -51,7 +50,7 @@ class Played(Search):
         gone = [old for old, new in self.vanish.items() if new == trial.name and old in model.effects]
         return model.with_effects([*(n for n in model.effects if n not in gone), trial.name]), gone
 
-    def slip_round(self, model: Model, screened: Sequence[Hypothesis]) -> tuple[Model, Step | None]:
+    def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         return model, None
 
     def settled(self, model: Model) -> Model:

@@ -21,6 +21,11 @@ def inverse(size: float, scale: float) -> float:
     return size / scale
 
 
+def towards(absent: float) -> Callable[[float, float], float]:
+    """A size nears the value at which the effect is absent."""
+    return lambda size, scale: absent - (absent - size) * scale
+
+
 class Effect(NamedTuple):
     """One row of the table.
 

@@ -1,6 +1,6 @@
 """Effects in valve, supply, lines, chambers and sensors."""
 
-from .effect import Effect, Fields, Rng, either, field, fixed, inverse
+from .effect import Effect, Fields, Rng, either, field, fixed, inverse, towards
 from .machine import Machine
 
 _CHAMBERS = ("chamber_a", "chamber_b")
@@ -37,10 +37,6 @@ def _dead(machine: Machine, size: float, rng: Rng) -> Fields:
     return {name: getattr(machine, name) + size for name in names}
 
 
-def _towards_diatomic(exponent: float, scale: float) -> float:
-    return 1.4 - (1.4 - exponent) * scale
-
-
 VALVE = {
     "choked_flow": Effect("m3/(s Pa)", 4e-9, 6e-9, _VALVE, _choked, weaken=lambda size, scale: size),
     "choked_flow:mixed": Effect("1", 0.3, 1.0, _VALVE, _mixed, same_shape=False),
@@ -67,7 +63,7 @@ GAS = {
     ),
     "dead_volume": Effect("m3", 5e-5, 3e-4, _CHAMBERS, _dead),
     "heat_exchange": Effect("s", 0.1, 0.5, _CHAMBERS, field("wall_time"), same_shape=False, weaken=inverse),
-    "heat_exchange:polytropic": Effect("1", 1.1, 1.25, _CHAMBERS, field("adiabatic"), weaken=_towards_diatomic),
+    "heat_exchange:polytropic": Effect("1", 1.1, 1.25, _CHAMBERS, field("adiabatic"), weaken=towards(1.4)),
 }
 
 SENSORS = {

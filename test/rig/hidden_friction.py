@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .effect import Effect, Fields, Rng, field, fixed, inverse
+from .effect import Effect, Fields, Rng, field, fixed, inverse, towards
 from .machine import Machine
 
 _MOMENTUM = ("momentum",)
@@ -43,10 +43,6 @@ def _rested(machine: Machine, size: float, rng: Rng) -> Fields:
     return {"rest_rise": size, "rest_time": 10.0 ** rng.uniform(-0.7, 0.5), "rest_power": rng.uniform(0.5, 0.8)}
 
 
-def _towards_two(size: float, scale: float) -> float:
-    return 2.0 - (2.0 - size) * scale
-
-
 FRICTION = {
     "viscous_friction": Effect("N s/m", 80.0, 300.0, _MOMENTUM, _viscous),
     "asymmetric_friction": Effect("1", 0.1, 0.4, _MOMENTUM, field("retract_excess"), signed=True),
@@ -57,7 +53,7 @@ FRICTION = {
     "pressure_dependent_friction:lips": Effect(
         "N/Pa", 3e-5, 1e-4, _MOMENTUM, fixed("seal", seal_power=0.8), same_shape=False
     ),
-    "stribeck_shape": Effect("1", 0.5, 1.0, _MOMENTUM, field("stribeck_power"), weaken=_towards_two),
+    "stribeck_shape": Effect("1", 0.5, 1.0, _MOMENTUM, field("stribeck_power"), weaken=towards(2.0)),
     "friction_warmup": Effect("1", 0.15, 0.4, _MOMENTUM, _warming),
     "friction_warmup:two_rates": Effect(
         "1", 0.15, 0.4, _MOMENTUM, fixed("warm_share", warm_fast=4.0, warm_slow=25.0, warm_split=0.6), same_shape=False
