@@ -15,6 +15,7 @@ from pneumo_ros.discover.hypothesis import (
     huber,
     log_likelihood,
     solve,
+    solve_within,
     vectors,
     weights,
 )
@@ -71,9 +72,9 @@ def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = I
     while True:
         theta = np.array([here[n] for n in names])
         offset, scale = (theta - middle) / prior, family_scales(evidence, r)
-        after, x = r, np.zeros(len(names))
+        after, x, room = r, np.zeros(len(names)), ((low - theta) / prior, (high - theta) / prior)
         for _ in range(3):
-            x, _A, _bread = solve(J, r, weights(evidence, after, scale), np.ones(len(names)), offset)
+            x = solve_within(J, r, weights(evidence, after, scale), np.ones(len(names)), offset, *room)
             after = r + J @ x
         before, expected = _cost(evidence, r, offset, scale), _cost(evidence, after, offset + x, scale)
         steps = [np.clip(theta + share * x * prior, low, high) for share in (1.0, 0.3, 0.1)]

@@ -88,6 +88,12 @@ class Coordinate:
         """The nearest u whose value is allowed."""
         return self.u(self.value(u))
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest u whose value is allowed."""
+        first, second = self.clip(-1e9), self.clip(1e9)
+        return min(first, second), max(first, second)
+
 
 def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
     """Coordinates of all parameters of an effect; () when none of them fades it in."""

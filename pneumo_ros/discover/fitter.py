@@ -88,14 +88,17 @@ class Fitter:
         return base_fit(self.train, self.whole, model, self.known(model))
 
     def deviations(self, model: Model) -> dict[str, float]:
-        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing."""
+        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing.
+
+        Beside a parameter that its range holds, the others are as sure as if it were known.
+        """
         base = self.fit(model)
         w = weights(self.train, base.residual, family_scales(self.train, base.residual))
-        A = base.slopes * w[:, None]
-        bread = np.linalg.inv(A.T @ A + np.eye(len(base.names)))
-        cov = cluster_robust(A, w * base.residual, self.train.block, bread, np.ones(len(base.names)))
-        std = np.sqrt(np.maximum(np.diag(cov), np.diag(bread))) * base.prior
-        named = zip(base.names, std, base.prior, strict=True)
+        A, e = base.slopes * w[:, None], w * base.residual
+        held = np.array([model[n] in (model.specification(n).low, model.specification(n).high) for n in base.names])
+        std = _spread(A, e, self.train)
+        std[~held] = _spread(A[:, ~held], e, self.train)
+        named = zip(base.names, std * base.prior, base.prior, strict=True)
         return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
 
     def extended(self, model: Model, h: Hypothesis) -> Model:
@@ -107,6 +110,14 @@ class Fitter:
         moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
         values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
         return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)
+
+
+def _spread(A: Array, e: Array, evidence: Evidence) -> Array:
+    """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, no less than noise alone gives."""
+    ridge = np.ones(A.shape[1])
+    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    robust = cluster_robust(A, e, evidence.block, bread, ridge)
+    return np.asarray(np.sqrt(np.maximum(np.diag(robust), np.diag(bread))))
 
 
 def _coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
@@ -161,6 +162,17 @@ def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Ar
     A = K * w[:, None]
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))
     return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
+
+
+def solve_within(K: Array, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
+    """The step of `solve` that is best within low and high (p,).
+
+    One cut off at the end of its range would leave what trades with it where it does not belong.
+    """
+    A = K * w[:, None]
+    root = np.linalg.cholesky(A.T @ A + np.diag(ridge)).T
+    wanted = -np.linalg.solve(root.T, A.T @ (w * r) + ridge * offset)
+    return np.asarray(np.clip(lsq_linear(root, wanted, (low, high), method="bvls").x, low, high))
 
 
 def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:

@@ -12,7 +12,7 @@ from pneumo_ros.discover.hypothesis import (
     BaseFit,
     Hypothesis,
     family_scales,
-    solve,
+    solve_within,
     vectors,
     weights,
 )  # fmt: skip
@@ -153,21 +153,11 @@ def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
 
 
 def bounded_step(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
-    """The step of `solve` with the candidate's coordinates kept within their bounds, the others at their best beside.
-
-    A coordinate that leaves its range is held at the end of it, and all that is free is solved anew.
-    """
-    first, x = K.shape[1] - len(h.u), np.zeros(K.shape[1])
-    free = np.ones(len(x), dtype=bool)
-    while True:
-        x[free] = solve(K[:, free], here + K[:, ~free] @ x[~free], w, ridge[free], offset[free])[0]
-        wanted = h.u + x[first:]
-        inside = np.array([c.clip(v) for c, v in zip(h.coordinates, wanted, strict=True)])
-        across = np.append(np.zeros(first, dtype=bool), np.abs(inside - wanted) > 1e-9) & free
-        if not across.any():
-            return x
-        x[across] = (inside - h.u)[across[first:]]
-        free &= ~across
+    """The best step with the candidate's coordinates kept within their bounds."""
+    low, high = np.full(K.shape[1], -np.inf), np.full(K.shape[1], np.inf)
+    ends = np.array([c.ends for c in h.coordinates])
+    low[-len(h.u) :], high[-len(h.u) :] = (ends - h.u[:, None]).T
+    return solve_within(K, here, w, ridge, offset, low, high)
 
 
 def held_out(base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
