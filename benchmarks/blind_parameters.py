@@ -5,6 +5,7 @@ from math import pi, sqrt
 from typing import Any
 
 Fields = Mapping[str, float]
+Truths = dict[str, Callable[[Fields], float]]
 NEW_VOLUMES = {"volume_a": 5.1e-4, "volume_b": 4.0e-4}  # m3, of the machine file
 
 
@@ -20,8 +21,11 @@ def _tank_time(m: Fields) -> float:
     return m["tank"] * m["feed"] / (m["adiabatic"] * m["gas_constant"] * m["temperature"])
 
 
+_DROOP: Truths = {"resistance_supply": lambda m: m["feed"], "time_constant": _tank_time}
+_LEAKS: Truths = {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]}
+
 # By the rig's name of the shape. What is not here has another equation than the catalogue, and only a name to compare.
-TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
+TRUE: dict[str, Truths] = {
     "viscous_friction": {"coefficient": lambda m: m["viscous_out"]},
     "asymmetric_friction": {"ratio": lambda m: m["retract_excess"]},
     "asymmetric_viscous_friction": {
@@ -56,10 +60,12 @@ TRUE: dict[str, dict[str, Callable[[Fields], float]]] = {
     },
     "valve_null_offset": {"offset": lambda m: m["null_offset"]},
     "valve_hysteresis": {"half_width": lambda m: m["play"]},
-    "supply_pressure_droop": {"resistance_supply": lambda m: m["feed"], "time_constant": _tank_time},
+    "supply_pressure_droop": _DROOP,
+    "supply_pressure_droop:line": _DROOP,
     "line_delay": {"delay": lambda m: m["line_delay"], "loss_pressure": lambda m: m["line_loss"]},
     "cross_piston_leakage": {"conductance": lambda m: m["cross"]},
-    "leakage_to_atmosphere": {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]},
+    "leakage_to_atmosphere": _LEAKS,
+    "leakage_to_atmosphere:both": _LEAKS,
     "heat_exchange:polytropic": {"share": lambda m: (1.4 - m["adiabatic"]) / 0.4},
     "dead_volume": {
         "volume_added_a": lambda m: m["volume_a"] - NEW_VOLUMES["volume_a"],

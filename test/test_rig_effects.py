@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from rig import effects, gas, loop, rates, sensors, valve
+from rig import effects, friction, gas, loop, rates, sensors, valve
 from rig.machine import SMOOTH, Machine, packed
+from scipy.signal import lfilter
 
 AT_SENSORS = {*effects.SENSORS, "backlash"}
 AT_ENDS = {"cushioning"}
@@ -146,6 +147,49 @@ def test_friction_lag_answers_the_velocity_of_then():
     assert broke[2] > broke[0]
 
 
+def test_tube_as_a_volume_fills_by_first_order():
+    """Into a held chamber: the flow's lag is a lag of the pressure's rise."""
+    held = BASE._replace(static=1e5, coulomb=1e5)
+    x, base = (run(m, np.full(200, 3.0))[0][:, 2] for m in (held._replace(line_lag=0.01), held))
+    lagged = lfilter([1.0 - math.exp(-0.1)], [1.0, -math.exp(-0.1)], base - base[0])
+    assert x[150] - x[0] == pytest.approx(lagged[150], rel=0.02)
+
+
+def test_spool_moves_no_faster_than_its_slew_rate():
+    states = run(BASE._replace(spool_lag=2e-3, spool_slew=40.0), np.full(100, 2.0))[1]
+    spool = states[:, COLUMN["spool"]]
+    assert np.diff(spool).max() == pytest.approx(0.04, rel=1e-6)
+    assert spool[-1] == pytest.approx(2.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("v", "share"), [(0.0, 1.0), (0.01, 0.5), (0.03, 0.1)])
+def test_rational_stribeck_falls_as_hess_and_soom_say(v, share):
+    machine = packed(BASE._replace(stribeck=0.01, stribeck_rational=1.0))
+    level = friction.level(machine, 0.0, v, 1.0, 3e5, 3e5, 0.0, 0.0, 0.0)
+    assert level == pytest.approx(BASE.coulomb + share * (BASE.static - BASE.coulomb))
+
+
+def test_rest_may_raise_the_breakaway_by_its_logarithm():
+    machine = packed(BASE._replace(rest_rise=30.0, rest_time=0.05, rest_log=1.0))
+    rest = [friction.level(machine, 0.0, 0.0, 1.0, 3e5, 3e5, age, 0.0, 0.0) for age in (0.0, 0.5, 10.0)]
+    assert rest[0] == pytest.approx(BASE.static)
+    assert rest[2] == pytest.approx(BASE.static + 30.0)
+    assert rest[1] - rest[0] == pytest.approx(30.0 * math.log(11.0) / math.log(201.0))
+
+
+def test_work_of_friction_warms_it():
+    warm = BASE._replace(warm_work=0.4, warm_fast=1.0)
+    x, states = run(warm, np.full(4000, 2.0), y=-0.9, p_a=5e5)
+    assert states[-1, COLUMN["warmth"]] == pytest.approx(min(70.0 * x[-1, 1] / 20.0, 1.0), abs=0.4)
+    assert states[-1, COLUMN["bristle"]] * BASE.static < 0.85 * BASE.coulomb
+
+
+def test_sublinear_film_is_that_of_the_linear_one_at_a_third_of_a_metre_per_second():
+    linear, bent = (packed(BASE._replace(viscous_out=200.0, viscous_power=p)) for p in (1.0, 0.7))
+    assert friction.film(bent, 0.3) == pytest.approx(friction.film(linear, 0.3))
+    assert friction.film(bent, 0.03) - BASE.drag * 0.03**2 == pytest.approx(6.0 * 10.0**0.3)
+
+
 @pytest.mark.parametrize("spread", [0.0, 1.0])
 def test_play_gives_a_loop_of_its_width(spread):
     machine, plays = packed(BASE._replace(play=0.1, play_spread=spread)), np.zeros(5)
@@ -178,6 +222,13 @@ def test_force_of_an_effect_shows_in_the_balance_of_a_slide(name, size, force):
     slowing = 0.3  # N: what is left of the acceleration
     assert v > 0.1
     assert gas_force - BASE.coulomb - BASE.drag * v**2 == pytest.approx(force(v, 0.0, (p_a, p_b)), abs=slowing)
+
+
+def test_coulomb_friction_alone_may_be_higher_in_retraction():
+    machine = packed(hidden("asymmetric_friction:coulomb", 0.3))
+    fast, still = (friction.level(machine, 0.0, v, -1.0, 3e5, 3e5, 0.0, 0.0, 0.0) for v in (1.0, 0.0))
+    assert fast == pytest.approx(1.3 * BASE.coulomb)
+    assert still == pytest.approx(BASE.static + 0.3 * BASE.coulomb)
 
 
 def test_retracting_friction_is_higher_by_its_excess():
@@ -222,6 +273,13 @@ def test_delayed_encoder_shows_an_earlier_position():
     run_ = recorded(BASE._replace(position_delay=0.0075))
     middle = 0.5 * (run_.truth[100:-7, 0] + run_.truth[99:-8, 0])
     assert run_.position[107:] == pytest.approx(middle, abs=6e-6)
+
+
+def test_filtered_encoder_lags_a_steady_slide_by_its_time_constant():
+    run_ = recorded(BASE._replace(position_filter=0.01), np.full(3000, 2.0))
+    y = run_.truth[:, 0]
+    assert np.ptp(np.diff(y[2000:])) < 0.02 * np.diff(y[2000:]).mean()
+    assert run_.position[2500] == pytest.approx(y[2490], abs=2e-5)
 
 
 def test_loose_encoder_waits_at_reversals():

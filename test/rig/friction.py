@@ -1,6 +1,6 @@
 """Friction: the level a bristle can bear, its yielding, and the film's drag."""
 
-from math import exp, pi, sin, tanh
+from math import exp, log1p, pi, sin, tanh
 
 from numba import njit
 from numpy import ndarray
@@ -21,14 +21,23 @@ def between(table: ndarray, at: float) -> float:
 
 
 @njit
-def level(m: Machine, y: float, v: float, load: float, p_a: float, p_b: float, age: float, t: float) -> float:
+def level(
+    m: Machine, y: float, v: float, load: float, p_a: float, p_b: float, age: float, warmth: float, t: float
+) -> float:
     """Highest steady force of the bristle g [N]; `load` is the bristle's share of static friction, signed."""
     static = m.static
     if m.rest_rise != 0.0:  # Kato's law of static friction over the time at rest
-        static += m.rest_rise * (1.0 - exp(-((age / m.rest_time) ** m.rest_power)))
-    g = m.coulomb + (static - m.coulomb) * exp(-(abs(v / m.stribeck) ** m.stribeck_power))
+        if m.rest_log == 0.0:
+            static += m.rest_rise * (1.0 - exp(-((age / m.rest_time) ** m.rest_power)))
+        else:  # after Dieterich
+            static += m.rest_rise * log1p(age / m.rest_time) / log1p(10.0 / m.rest_time)
+    rise = exp(-(abs(v / m.stribeck) ** m.stribeck_power))
+    if m.stribeck_rational != 0.0:  # after Hess and Soom
+        rise += m.stribeck_rational * (1.0 / (1.0 + (v / m.stribeck) ** 2) - rise)
+    g = m.coulomb + (static - m.coulomb) * rise
     if m.retract_excess != 0.0:  # the direction is that of the sheared bristle, not of the velocity
-        g *= 1.0 + m.retract_excess * 0.5 * (1.0 - tanh(20.0 * load))
+        excess = m.retract_excess * 0.5 * (1.0 - tanh(20.0 * load))
+        g += excess * (m.coulomb + m.retract_static * (g - m.coulomb))
     if m.spot_height != 0.0:
         g *= 1.0 + m.spot_height * exp(-0.5 * ((y - m.spot_centre) / m.spot_width) ** 2)
     if m.bow != 0.0:
@@ -36,6 +45,8 @@ def level(m: Machine, y: float, v: float, load: float, p_a: float, p_b: float, a
     if m.warm_share != 0.0:
         cold = m.warm_split * exp(-t / m.warm_fast) + (1.0 - m.warm_split) * exp(-t / m.warm_slow)
         g *= 1.0 - m.warm_share * (1.0 - cold)
+    if m.warm_work != 0.0:
+        g *= 1.0 - m.warm_work * warmth
     if m.seal != 0.0:
         gauge_a, gauge_b = max(p_a - m.atmosphere, 1.0), max(p_b - m.atmosphere, 1.0)
         scale = 0.5 * m.seal * 3e5 ** (1.0 - m.seal_power)
@@ -65,4 +76,6 @@ def yielded(m: Machine, v: float, deflection: float, share: float) -> float:
 def film(m: Machine, v: float) -> float:
     """Drag of the film [N]: the base model's square, and the viscous part, by the direction."""
     viscous = m.viscous_out * max(v, 0.0) + m.viscous_in * min(v, 0.0)
+    if m.viscous_power != 1.0 and v != 0.0:
+        viscous *= (abs(v) / 0.3) ** (m.viscous_power - 1.0)
     return viscous + m.drag * v * abs(v)

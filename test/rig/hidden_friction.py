@@ -12,6 +12,10 @@ def _viscous(machine: Machine, size: float, rng: Rng) -> Fields:
     return {"viscous_out": machine.viscous_out + size, "viscous_in": machine.viscous_in + size}
 
 
+def _sublinear(machine: Machine, size: float, rng: Rng) -> Fields:
+    return {**_viscous(machine, size, rng), "viscous_power": rng.uniform(0.6, 0.85)}
+
+
 def _one_sided(machine: Machine, size: float, rng: Rng) -> Fields:
     return {"viscous_out": machine.viscous_out + 0.3 * size, "viscous_in": machine.viscous_in + size}
 
@@ -45,7 +49,11 @@ def _rested(machine: Machine, size: float, rng: Rng) -> Fields:
 
 FRICTION = {
     "viscous_friction": Effect("N s/m", 80.0, 300.0, _MOMENTUM, _viscous),
+    "viscous_friction:power": Effect("N s/m", 80.0, 300.0, _MOMENTUM, _sublinear, same_shape=False),
     "asymmetric_friction": Effect("1", 0.1, 0.4, _MOMENTUM, field("retract_excess"), signed=True),
+    "asymmetric_friction:coulomb": Effect(
+        "1", 0.1, 0.4, _MOMENTUM, fixed("retract_excess", retract_static=0.0), same_shape=False, signed=True
+    ),
     "asymmetric_viscous_friction": Effect("N s/m", 60.0, 150.0, _MOMENTUM, _one_sided),
     "position_dependent_friction": Effect("1", 0.15, 0.6, _MOMENTUM, _spot, same_shape=False),
     "position_dependent_friction:bow": Effect("1", 0.08, 0.25, _MOMENTUM, field("bow"), same_shape=False),
@@ -54,11 +62,16 @@ FRICTION = {
         "N/Pa", 3e-5, 1e-4, _MOMENTUM, fixed("seal", seal_power=0.8), same_shape=False
     ),
     "stribeck_shape": Effect("1", 0.5, 1.0, _MOMENTUM, field("stribeck_power"), weaken=towards(2.0)),
+    "stribeck_shape:rational": Effect("1", 0.6, 1.0, _MOMENTUM, field("stribeck_rational"), same_shape=False),
     "friction_warmup": Effect("1", 0.15, 0.4, _MOMENTUM, _warming),
     "friction_warmup:two_rates": Effect(
         "1", 0.15, 0.4, _MOMENTUM, fixed("warm_share", warm_fast=4.0, warm_slow=25.0, warm_split=0.6), same_shape=False
     ),
+    "friction_warmup:work": Effect("1", 0.15, 0.4, _MOMENTUM, fixed("warm_work", warm_fast=10.0), same_shape=False),
     "dwell_time_breakaway": Effect("N", 15.0, 40.0, _MOMENTUM, _rested, same_shape=False),
+    "dwell_time_breakaway:logarithm": Effect(
+        "N", 15.0, 40.0, _MOMENTUM, fixed("rest_rise", rest_log=1.0, rest_time=0.05), same_shape=False
+    ),
     "friction_lag": Effect("s", 3e-3, 1e-2, _MOMENTUM, field("lag_delay"), same_shape=False),
     "friction_lag:film": Effect("s", 3e-3, 1e-2, _MOMENTUM, field("lag_film")),
 }

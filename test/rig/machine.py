@@ -44,7 +44,9 @@ class Machine(NamedTuple):
     # friction
     viscous_out: float = 0.0  # extending [N s/m]
     viscous_in: float = 0.0  # retracting
-    retract_excess: float = 0.0  # share by which friction is higher while retracting
+    viscous_power: float = 1.0  # of the speed, equal to linear at 0.3 m/s
+    retract_excess: float = 0.0  # share by which friction is higher while retracting ...
+    retract_static: float = 1.0  # ... and of that, what the part beyond Coulomb friction has
     spot_height: float = 0.0  # tight spot: share at its centre
     spot_centre: float = 0.0
     spot_width: float = 0.05  # standard deviation of the bell
@@ -52,13 +54,16 @@ class Machine(NamedTuple):
     seal: float = 0.0  # friction by pressure [N/Pa]
     seal_power: float = 1.0  # how it grows with pressure, equal to linear at 3e5 Pa gauge
     stribeck_power: float = 2.0
+    stribeck_rational: float = 0.0  # share that falls as 1 / (1 + (v / v_s)^2), not by an exponential
     warm_share: float = 0.0
     warm_fast: float = 30.0  # time constants of two exponentials [s] ...
     warm_slow: float = 30.0
     warm_split: float = 1.0  # ... and the first one's share
+    warm_work: float = 0.0  # share lost once friction has made 20 W for long, first order by warm_fast
     rest_rise: float = 0.0  # what a long rest adds to static friction [N]
     rest_time: float = 1.0
     rest_power: float = 1.0  # stretched exponential
+    rest_log: float = 0.0  # 1: grows with the logarithm instead, by rest_rise in 10 s
     rest_slip: float = 1e-4  # sliding distance that forgets the rest [m]
     lag_delay: float = 0.0  # the bristle's highest force answers the velocity of this long ago [s]
     lag_film: float = 0.0  # or a first-order lag of it [s]
@@ -85,6 +90,7 @@ class Machine(NamedTuple):
     spool_rate: float = 0.0  # natural frequency [rad/s]; 0: the spool is where the command is
     spool_damping: float = 0.8
     spool_lag: float = 0.0  # first order [s], instead
+    spool_slew: float = 1e9  # ... and no faster than this [V/s]
     sonic: float = 0.0  # share of the flow that goes the ISO 6358 way
     sonic_conductance: float = 5e-9
     critical_ratio: float = 0.3
@@ -98,6 +104,7 @@ class Machine(NamedTuple):
 
     # lines and chambers
     line_delay: float = 0.0
+    line_lag: float = 0.0  # or a first-order lag: the tube as a small volume [s]
     line_loss: float = 0.0  # R_t R T L / (2 c) of the tube [Pa]: exp(-this / p) of the flow gets through
     cushion: float = 1.0  # share of the exhaust path left at the very end
     cushion_length: float = 0.02
@@ -120,6 +127,7 @@ class Machine(NamedTuple):
     gain_a: float = 0.0
     gain_b: float = 0.0
     position_delay: float = 0.0
+    position_filter: float = 0.0  # first-order low-pass of the encoder's reading [s]
     encoder_play: float = 0.0  # half width [m]
 
 

@@ -27,6 +27,9 @@ STATES = (
     "load_v",
     "age",
     "film",
+    "warmth",
+    "line_a",
+    "line_b",
 )
 
 
@@ -68,12 +71,16 @@ def rates(m: Machine, rough: Roughness, x: ndarray, t: float, command: float, la
     q_a, q_b, drawn = line_flows(m, x, t, command)
     if m.line_delay > 0.0:
         q_a, q_b = late[0], late[1]
+    dx[15] = dx[16] = 0.0
+    if m.line_lag > 0.0:
+        dx[15], dx[16] = (q_a - x[15]) / m.line_lag, (q_b - x[16]) / m.line_lag
+        q_a, q_b = x[15], x[16]
     _chambers(m, x, p_a, p_b, q_a, q_b, dx)
     _supply(m, x, command, drawn, dx)
 
     lagged = late[2] if m.lag_delay > 0.0 else (x[13] if m.lag_film > 0.0 else v)
     dx[13] = (v - x[13]) / m.lag_film if m.lag_film > 0.0 else 0.0
-    g = level(m, y, lagged, x[2], p_a, p_b, x[12], t) + texture(rough.texture, y)
+    g = level(m, y, lagged, x[2], p_a, p_b, x[12], x[14], t) + texture(rough.texture, y)
     share = x[2] * m.static / g
     slip = v - yielded(m, v, x[2], share) * abs(v) * share
     resist = x[2] * m.static + m.bristle_damping * slip + film(m, v)
@@ -81,6 +88,7 @@ def rates(m: Machine, rough: Roughness, x: ndarray, t: float, command: float, la
     force = gas - resist - external(m, y) + stop(m, y, v) + between(rough.force, t / FORCE_SPACING)
     _bodies(m, x, force, dx)
     dx[2] = slip * m.bristle / m.static
+    dx[14] = (min(abs(resist * v) / 20.0, 1.0) - x[14]) / m.warm_fast if m.warm_work != 0.0 else 0.0
     dx[12] = 1.0 - abs(v) * x[12] / m.rest_slip if m.rest_rise != 0.0 else 0.0
 
 
@@ -112,7 +120,7 @@ def _supply(m: Machine, x: ndarray, command: float, drawn: float, dx: ndarray) -
         dx[7] = x[8]
         dx[8] = m.spool_rate * (m.spool_rate * (command - x[7]) - 2.0 * m.spool_damping * x[8])
     elif m.spool_lag > 0.0:
-        dx[7] = (command - x[7]) / m.spool_lag
+        dx[7] = min(max((command - x[7]) / m.spool_lag, -m.spool_slew), m.spool_slew)
     if m.feed > 0.0:
         coming = (m.supply - x[9]) / m.feed
         dx[9] = m.adiabatic * m.gas_constant * m.temperature / m.tank * (coming - drawn)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
 from .loop import SAMPLE, readings
 from .machine import Machine
@@ -42,6 +43,14 @@ def _delayed(m: Machine, truth: np.ndarray) -> np.ndarray:
     return y0 + s * (rise + (1.0 - s) * ((1.0 - s) * (v0 * SAMPLE - rise) - s * (v1 * SAMPLE - rise)))
 
 
+def _filtered(m: Machine, position: np.ndarray) -> np.ndarray:
+    """Position behind a first-order low-pass, exact for one that goes straight from sample to sample."""
+    left = np.exp(-SAMPLE / m.position_filter)
+    mean = m.position_filter / SAMPLE * (1.0 - left)
+    part = lfilter([1.0 - mean, mean - left], [1.0, -left], position - position[0])
+    return position[0] + part
+
+
 def _loose(m: Machine, position: np.ndarray) -> np.ndarray:
     """What an encoder shows that is dragged along through a dead band."""
     shown, follower = np.empty_like(position), position[0]
@@ -66,6 +75,7 @@ def record(
     """
     n, truth = len(states), readings(m, states)
     position = _delayed(m, truth) if m.position_delay > 0.0 else truth[:, 0]
+    position = _filtered(m, position) if m.position_filter > 0.0 else position
     position = _loose(m, position) if m.encoder_play > 0.0 else position
     nominal = np.arange(n) * round(SAMPLE * 1e9)
     stamps = nominal + np.round(rng.normal(0.0, CLOCK_JITTER, n) * 1e9).astype(np.int64)
