@@ -34,6 +34,10 @@ TRUE: dict[str, Truths] = {
     },
     "pressure_dependent_friction": {"coefficient": lambda m: m["seal"]},
     "stribeck_shape": {"exponent": lambda m: m["stribeck_power"]},
+    "stribeck_shape:rational": {
+        "exponent": lambda m: m["stribeck_power"],
+        "rational": lambda m: m["stribeck_rational"],
+    },
     "friction_warmup": {"share": lambda m: m["warm_share"], "time_constant": lambda m: m["warm_fast"]},
     "friction_lag:film": {"time_constant": lambda m: m["lag_film"]},
     "payload_mass": {"mass_added": lambda m: m["payload"]},

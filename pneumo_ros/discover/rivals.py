@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.discover.hypothesis import BaseFit
 from pneumo_ros.discover.measures import pooled_advantage
-from pneumo_ros.discover.trial import MATERIAL, T_LEAST, Trial
+from pneumo_ros.discover.trial import MATERIAL, REST_LEAST, T_LEAST, Trial
 
 Array = NDArray[np.float64]
 
@@ -38,9 +38,13 @@ def _likeness(one: Array, other: Array) -> float:
 
 
 def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:
-    """The first of `good`, or what it contains when all runs together do not ask for more; None of none."""
+    """The first of `good`, or what it contains when the runs do not ask for more; None of none.
+
+    They ask for more when they tell the two apart, and the simple one leaves more than the shape of a law may.
+    """
     for other in good[1:]:
-        if other.name in _contained(base, good[0]) and _tied(base, held, good[0], other):
+        shape = good[0].share - other.share < REST_LEAST
+        if other.name in _contained(base, good[0]) and (shape or _tied(base, held, good[0], other)):
             return other
     return good[0] if good else None
 

@@ -69,6 +69,7 @@ class Search:
         model, steps = base, list[Step]()
         before, vanished = self.predicted(base), dict[str, str]()
         refused = vanished  # beside this model: another one may make room for it
+        least = before  # of all models so far: what mends an added law of another shape is no effect
         try:
             while True:
                 k = len(model.effects) - len(base.effects)
@@ -87,9 +88,10 @@ class Search:
                 refused = vanished
                 steps = [without(s, gone, VANISHED) for s in (*steps, step)]
                 model, before = new, after
+                least = {name: min(least[name], error) for name, error in after.items()}
             self.progress(0.85, "looking at breakaways and reversals")
             new, last = self.slip_round(model)
-            if last is not None and last.added is not None and pays(before, self.predicted(new)):
+            if last is not None and last.added is not None and pays(least, self.predicted(new)):
                 steps[-1:] = [last, replace(steps[-1], model=new)]
                 model = new
             base, model = self.settled(base), self.settled(model)

@@ -24,7 +24,7 @@ SAME = {
     ),
     "heat_exchange": ({"adiabatic": 1.2}, {"rate": 0.0, "share": 0.5}),
     "pressure_dependent_friction": ({"seal": 8e-5}, {"coefficient": 8e-5}),
-    "stribeck_shape": ({"stribeck_power": 0.7}, {"exponent": 0.7}),
+    "stribeck_shape": ({"stribeck_power": 0.7, "stribeck_rational": 0.6}, {"exponent": 0.7, "rational": 0.6}),
     "friction_warmup": ({"warm_share": 0.3, "warm_fast": 1.0}, {"share": 0.3, "time_constant": 1.0}),
     "friction_lag": ({"lag_film": 5e-3}, {"time_constant": 5e-3}),
     "dwell_time_breakaway": (

@@ -31,9 +31,10 @@ def level(
             static += m.rest_rise * (1.0 - exp(-((age / m.rest_time) ** m.rest_power)))
         else:  # after Dieterich
             static += m.rest_rise * log1p(age / m.rest_time) / log1p(10.0 / m.rest_time)
-    rise = exp(-(abs(v / m.stribeck) ** m.stribeck_power))
+    speed = abs(v / m.stribeck) ** m.stribeck_power
+    rise = exp(-speed)
     if m.stribeck_rational != 0.0:  # after Hess and Soom
-        rise += m.stribeck_rational * (1.0 / (1.0 + (v / m.stribeck) ** 2) - rise)
+        rise += m.stribeck_rational * (1.0 / (1.0 + speed) - rise)
     g = m.coulomb + (static - m.coulomb) * rise
     if m.retract_excess != 0.0:  # the direction is that of the sheared bristle, not of the velocity
         excess = m.retract_excess * 0.5 * (1.0 - tanh(20.0 * load))

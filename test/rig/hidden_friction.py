@@ -62,7 +62,7 @@ FRICTION = {
         "N/Pa", 3e-5, 1e-4, _MOMENTUM, fixed("seal", seal_power=0.8), same_shape=False
     ),
     "stribeck_shape": Effect("1", 0.5, 1.0, _MOMENTUM, field("stribeck_power"), weaken=towards(2.0)),
-    "stribeck_shape:rational": Effect("1", 0.6, 1.0, _MOMENTUM, field("stribeck_rational"), same_shape=False),
+    "stribeck_shape:rational": Effect("1", 0.6, 1.0, _MOMENTUM, field("stribeck_rational")),
     "friction_warmup": Effect("1", 0.15, 0.4, _MOMENTUM, _warming),
     "friction_warmup:two_rates": Effect(
         "1", 0.15, 0.4, _MOMENTUM, fixed("warm_share", warm_fast=4.0, warm_slow=25.0, warm_split=0.6), same_shape=False

@@ -54,7 +54,7 @@ class Machine(NamedTuple):
     seal: float = 0.0  # friction by pressure [N/Pa]
     seal_power: float = 1.0  # how it grows with pressure, equal to linear at 3e5 Pa gauge
     stribeck_power: float = 2.0
-    stribeck_rational: float = 0.0  # share that falls as 1 / (1 + (v / v_s)^2), not by an exponential
+    stribeck_rational: float = 0.0  # share that falls as 1 / (1 + (v / v_s)^power), not by an exponential
     warm_share: float = 0.0
     warm_fast: float = 30.0  # time constants of two exponentials [s] ...
     warm_slow: float = 30.0
