@@ -67,11 +67,11 @@ class Fitter:
         """All free parameters fitted to the training evidence."""
         return fit_base(self.train, model, self.known(model), iterations)
 
-    def fits(self, model: Model) -> tuple[BaseFit, BaseFit]:
-        """The model on training and held-out evidence, the laws of what was added free in shape."""
+    def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
+        """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
-        added, (usual, others) = self.added(model), self.conditions
-        return freed(train, added, usual), freed(held, added, others)
+        names, (usual, others) = self.added(model) if bent is None else bent, self.conditions
+        return freed(train, names, usual), freed(held, names, others)
 
     def added(self, model: Model) -> list[str]:
         """Effects of `model` that the start lacks."""

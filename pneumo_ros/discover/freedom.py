@@ -7,6 +7,7 @@ squares less 1. The e_k stand beside the base parameters while further candidate
 and that predicts keeps the catalogue's law. What sensors do has no such freedom: an offset is an offset.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -43,7 +44,7 @@ def relative(values: Array, others: Array) -> Array:
     return np.concatenate([x, x**2 - 1.0], axis=1)
 
 
-def freed(fit: BaseFit, added: list[str], seen: Array) -> BaseFit:
+def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
     """The fit with the e_k of each effect that was added as further base parameters; seen: `relative` conditions."""
     added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
     if not added:

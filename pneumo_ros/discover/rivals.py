@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.discover.hypothesis import BaseFit
 from pneumo_ros.discover.measures import pooled_advantage
-from pneumo_ros.discover.trial import MATERIAL, REST_LEAST, T_LEAST, Trial
+from pneumo_ros.discover.trial import MATERIAL, T_LEAST, Trial
 
 Array = NDArray[np.float64]
 
@@ -40,13 +40,19 @@ def _likeness(one: Array, other: Array) -> float:
 def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:
     """The first of `good`, or what it contains when the runs do not ask for more; None of none.
 
-    They ask for more when they tell the two apart, and the simple one leaves more than the shape of a law may.
+    They ask for more when they tell the two apart, and what lies between them is of some size.
     """
     for other in good[1:]:
-        shape = good[0].share - other.share < REST_LEAST
-        if other.name in _contained(base, good[0]) and (shape or _tied(base, held, good[0], other)):
+        little = _between(held, good[0], other) < MATERIAL
+        if other.name in _contained(base, good[0]) and (little or _tied(base, held, good[0], other)):
             return other
     return good[0] if good else None
+
+
+def _between(held: BaseFit, best: Trial, other: Trial) -> float:
+    """Size of what two effects change differently, over that of what the best one changes."""
+    whole = float(np.linalg.norm(held.residual - best.held))
+    return float(np.linalg.norm(other.held - best.held)) / whole if whole else 0.0
 
 
 def _contained(base: BaseFit, trial: Trial) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.basefit import relief_of, strain
+from pneumo_ros.discover.basefit import at_best, relief_of, strain
 from pneumo_ros.discover.coordinates import coordinates
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, log_likelihood
@@ -43,20 +43,22 @@ def followed(
     chosen = [h for h in list(best.values())[:TRIED] if h.name not in known]
     models = [fitter.refit(fitter.extended(base.model, h), ITERATIONS) for h in chosen]
     found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
-    return found, [fitter.held.residual(new) for new in models]
+    return [h for h, _ in found], [held for _, held in found]
 
 
-def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> Hypothesis:
-    fit, own = fitter.fit(new), coordinates(new.library.find(name))
-    rows = [fit.names.index(n) for n in base.names[base.own]]
+def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[Hypothesis, Array]:
+    """As a trial wants it, and its held-out residual; laws are as free in shape as beside no candidate."""
+    (fit, held), own = fitter.fits(new, fitter.added(base.model)), coordinates(new.library.find(name))
+    shift, after, _value = at_best(fit, fit.residual)
+    offset, bends = base.offset.copy(), slice(len(fit.names) - fit.bends, None)
+    offset[base.own] = (fit.offset + shift)[[fit.names.index(n) for n in base.names[base.own]]]
+    offset[base.own.stop :] = (fit.offset + shift)[bends]
     columns = [fit.names.index(c.name) for c in own]
-    offset = base.offset.copy()
-    offset[base.own] = fit.offset[rows]
     std = fitter.deviations(new)
     return Hypothesis(
-        name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, fit.residual,
-        likelihood=log_likelihood(fitter.train, fit.residual) - strain(offset),
+        name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, after,
+        likelihood=log_likelihood(fitter.train, after) - strain(offset),
         t=max(abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size),
         relief=relief_of(base, offset - base.offset),
         slopes=fit.slopes[:, columns] / np.array([c.prior for c in own]),
-    )  # fmt: skip
+    ), held.residual + held.slopes @ shift  # fmt: skip
