@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
+from scipy.sparse import csr_array
 
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
@@ -180,8 +181,7 @@ def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, r
 
     What a prior holds (`ridge`, its information) is as uncertain as the prior says.
     """
-    scores = np.zeros((int(block.max()) + 1, A.shape[1]))
-    np.add.at(scores, block, A * e[:, None])
+    scores = csr_array((e, block, np.arange(len(e) + 1)), (len(e), int(block.max()) + 1)).T @ A
     n = len(scores)
     return np.asarray(bread @ (scores.T @ scores * (n / max(n - A.shape[1], 1)) + np.diag(ridge)) @ bread)
 
