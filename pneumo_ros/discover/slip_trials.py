@@ -11,7 +11,7 @@ from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.court import magnitude
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
 from pneumo_ros.discover.mechanics import moves
-from pneumo_ros.discover.slips import FEW, Slips, errors, friction_priors, with_values_of
+from pneumo_ros.discover.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.identify.estimates import Refit
@@ -20,7 +20,6 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
 BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
 SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 TRIED = 3  # candidates that are fitted, of all that begin well
