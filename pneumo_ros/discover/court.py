@@ -1,6 +1,6 @@
 """Candidates put on trial: is a size stable, do traces shifted in time do as well, what do held-out runs gain."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +27,7 @@ TEXTURE = 0.01  # of the driving force: a smaller force must explain most of wha
 DECOYS = 12
 KNOWN = 0.5  # of a size: runs that know it less well do not speak against it
 FEW_RUNS = 3
+SURE = 2.0  # deviations from none: a size that is nearer may be none
 
 
 def put_on_trial(
@@ -75,6 +76,15 @@ def size_in(model: Model, name: str) -> float:
     """Of an effect of the model, in usual ones."""
     own = coordinates(model.library.find(name))
     return magnitude(own, np.array([c.u(model[c.name]) for c in own]))
+
+
+def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
+    """Whether all sizes of an effect of the model may be none: none differs by more than two of its deviations `std`.
+
+    Where the data say nothing at all, of infinite deviation, they do not say that either.
+    """
+    sizes = [c for c in coordinates(model.library.find(name)) if c.is_size]
+    return all(abs(model[c.name] - (c.neutral or 0.0)) <= SURE * std[c.name] < np.inf for c in sizes)
 
 
 def stable(base: BaseFit, h: Hypothesis) -> bool:

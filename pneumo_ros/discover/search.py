@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import unaided
-from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining, size_in
+from pneumo_ros.discover.court import TEXTURE, put_on_trial, remaining, size_in, undetermined
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales
@@ -103,7 +103,8 @@ class Search:
     def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
         """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
         new = self.polish(self.fitter.refit(self.fitter.extended(model, trial.hypothesis)))
-        gone = [name for name in self.fitter.added(new) if size_in(new, name) < MATERIAL]
+        std = self.fitter.deviations(new)
+        gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or undetermined(new, n, std)]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone

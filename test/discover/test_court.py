@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.discover.coordinates import coordinates
-from pneumo_ros.discover.court import size_in, stable
+from pneumo_ros.discover.court import size_in, stable, undetermined
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.discover.steps import Step, without
@@ -62,6 +62,33 @@ def test_sizes_are_told_in_usual_ones(effect: str, values: dict[str, float], mat
     given = {f"{effect}.{key}": value for key, value in values.items()}
     model = MODEL.with_effects([*MODEL.effects, effect], given)
     assert (size_in(model, effect) > MATERIAL) is material
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "std", "expected"),
+    [
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": 0.029}, True),
+        ("asymmetric_friction", {"ratio": -0.07}, {"ratio": 0.029}, False),
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": np.inf}, False),  # the data do not say
+        (
+            "leakage_to_atmosphere",  # of the other chamber
+            {"conductance_a": 5e-10, "conductance_b": 1e-13},
+            {"conductance_a": 1e-11, "conductance_b": 1e-11},
+            False,
+        ),
+        (
+            "valve_spool_dynamics",  # its damping is a shape
+            {"angular_frequency": 960.0, "damping_ratio": 0.7},
+            {"angular_frequency": 30.0, "damping_ratio": 0.01},
+            True,
+        ),
+    ],
+)
+def test_a_size_within_its_deviations_of_none_may_be_none(
+    effect: str, values: dict[str, float], std: dict[str, float], expected: bool
+) -> None:
+    model = MODEL.with_effects([*MODEL.effects, effect], {f"{effect}.{key}": x for key, x in values.items()})
+    assert undetermined(model, effect, {f"{effect}.{key}": x for key, x in std.items()}) is expected
 
 
 def test_a_round_whose_effect_vanished_says_so() -> None:
