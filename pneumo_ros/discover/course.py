@@ -20,6 +20,7 @@ Index = NDArray[np.int64]
 
 BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
+SHORT = 1.01e-3  # s: a sample as short is one part where candidates are ranked, which errs by a hundredth of an effect
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
 _SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
 
@@ -56,46 +57,60 @@ def resting(run: Run) -> NDArray[np.bool_]:
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
     """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
-    states, mean = _drive(model, frame.run, frame.states, _held(frame.run))
+    states, mean = _drive(model, frame.run, frame.states, _held(frame.run, QUICK))
     return states, centred(mean)
 
 
-def follow_each(model: Model, frame: Frame, parameters: Array) -> Iterator[tuple[int, Array, Array]]:
-    """For each parameter vector, in any order: its index, states (n, states), claimed derivatives of v, p_a, p_b.
+@dataclass(frozen=True)
+class Followed:
+    """What one parameter vector makes of a run: its index, states (n, states), claimed derivatives of v, p_a, p_b.
+
+    `as_measured`: whether the frame's states are the measured ones.
+    """
+
+    index: int
+    states: Array
+    claimed: Array
+    as_measured: bool
+
+
+def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
+    """What each parameter vector makes of a run, in any order.
 
     Where the vector makes sensors differ from the states, the measured states are first corrected for what it claims
-    the sensors do: x = measured - (observed(x) - x), twice.
+    the sensors do: x = measured - (observed(x) - x), twice. `ranking`: as exact as ranking candidates asks for.
     """
+    parts = 1 if ranking and frame.run.sample_time < SHORT else QUICK
     corrects = sensing(model, parameters)
-    for own, drive in ((np.flatnonzero(~corrects), _as_measured), (np.flatnonzero(corrects), _corrected)):
+    for drive, own in ((_as_measured, np.flatnonzero(~corrects)), (_corrected, np.flatnonzero(corrects))):
         for rows in (own[k : k + BLOCK] for k in range(0, len(own), BLOCK)):
-            states, mean = drive(model, frame, parameters[rows])
+            states, mean = drive(model, frame, parameters[rows], parts)
             for k, x, m in zip(rows, states, mean, strict=True):
-                yield int(k), x, centred(m)
+                yield Followed(int(k), x, centred(m), drive is _as_measured)
 
 
-def _as_measured(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array]:
-    return _drive_lanes(model, frame.run, frame.states, parameters)
+def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
+    return _drive_lanes(model, frame.run, frame.states, parameters, parts)
 
 
-def _corrected(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array]:
+def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
     """Lanes driven along the measured states less what sensors do: those with the same sensors along the same."""
     first, group = alike_sensors(model, parameters)
-    given, own_states, own_mean = _without_sensors(model, frame, parameters[first])
+    given, own_states, own_mean = _without_sensors(model, frame, parameters[first], parts)
     states, mean = own_states[group], own_mean[group]
     for k, lane in enumerate(first):
         others = np.setdiff1d(np.flatnonzero(group == k), lane)
         if len(others):
-            states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others])
+            states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others], parts)
     return states, mean
 
 
-def _without_sensors(model: Model, frame: Frame, parameters: Array) -> tuple[Array, Array, Array]:
+def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array, Array]:
     """Frame states without what sensors do (lanes, n, 2 or 4), and the lanes driven along them.
 
     By a fixed point of two steps at most. Each lane stops by itself: what it gives does not depend on those beside it.
     """
-    states, mean = _as_measured(model, frame, parameters)
+    states, mean = _as_measured(model, frame, parameters, parts)
     given = np.repeat(frame.states[None], len(states), axis=0)
     moving, before = np.arange(len(states)), np.zeros((len(states), 1, 1))
     for _ in range(2):
@@ -105,22 +120,23 @@ def _without_sensors(model: Model, frame: Frame, parameters: Array) -> tuple[Arr
         if not len(moving):
             break
         given[moving] = [shifted(frame.states, own, frame.run.sample_time) for own in before]
-        states[moving], mean[moving] = _drive_lanes(model, frame.run, given[moving], parameters[moving])
+        states[moving], mean[moving] = _drive_lanes(model, frame.run, given[moving], parameters[moving], parts)
     return given, states, mean
 
 
-def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array) -> tuple[Array, Array]:
-    step = 1.01 * run.sample_time / QUICK
+def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
+    step = 1.01 * run.sample_time / parts
     rest = model.state()[given.shape[-1] :]
     columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
+    held = _held(run, parts)
     return model.follow_lanes(
-        given, _held(run), rest, parameters, sample_time=run.sample_time, parts=QUICK, step=step, columns=columns
+        given, held, rest, parameters, sample_time=run.sample_time, parts=parts, step=step, columns=columns
     )
 
 
-def _held(run: Run) -> Array:
-    """The input over halves of a sample: short enough for differences of variants."""
-    return np.asarray(run.input.reshape(-1, QUICK, PARTS // QUICK).mean(axis=2).ravel())
+def _held(run: Run, parts: int) -> Array:
+    """The input over parts of a sample."""
+    return np.asarray(run.input.reshape(-1, parts, PARTS // parts).mean(axis=2).ravel())
 
 
 def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs
 
-from pneumo_ros.discover.course import follow_each, frame_of
+from pneumo_ros.discover.course import Followed, follow_each, frame_of
 from pneumo_ros.discover.families import Family, families
 from pneumo_ros.identify.breakaway import REST
-from pneumo_ros.identify.equations import Chamber, Momentum
+from pneumo_ros.identify.equations import Chamber, MeasuredChamber
 from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.plant import Model
 
@@ -63,11 +63,14 @@ class Evidence:
         """What is measured minus what `model` claims, over noise (residuals,)."""
         return np.asarray(self.residuals(model, model.values[None])[0])
 
-    def residuals(self, model: Model, parameters: Array, threads: int = 2) -> Array:
-        """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals)."""
+    def residuals(self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False) -> Array:
+        """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
+
+        `ranking`: as exact as ranking candidates asks for, in less time.
+        """
         longest_first = sorted(self.courses, key=lambda course: -len(course.run))  # or the last one is waited for
         with ThreadPoolExecutor(threads) as pool:
-            parts = {course: pool.submit(course.values, model, parameters) for course in longest_first}
+            parts = {course: pool.submit(course.values, model, parameters, ranking) for course in longest_first}
         whole = np.concatenate([parts[course].result() for course in self.courses], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
 
@@ -97,20 +100,35 @@ class Course:
         self.rested = np.array([max(b.index - back, 0) for b in self.breakaways], dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
 
-    def values(self, model: Model, parameters: Array) -> Array:
+    def values(self, model: Model, parameters: Array, ranking: bool = False) -> Array:
         """Residuals (variants, usable windows) in their units, family after family."""
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
-        for k, states, claimed in follow_each(model, self.frame, parameters):
-            parts = [self._value(model, parameters[k], states, claimed, f)[f.usable] for f in self.families]
-            result[k] = np.concatenate(parts)
+        measured = [self._measured(model, f, self.frame.states) for f in self.families]
+        for variant in follow_each(model, self.frame, parameters, ranking):
+            own = measured
+            if not variant.as_measured:
+                own = [self._measured(model, f, variant.states) for f in self.families]
+            q = parameters[variant.index]
+            parts = [self._value(model, q, variant, f, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
+            result[variant.index] = np.concatenate(parts)
         return result
 
-    def _value(self, model: Model, q: Array, states: Array, claimed: Array, family: Family) -> Array:
-        if family.equation == "momentum":
-            return self._momentum(model, q, states, claimed, family)
+    def _measured(self, model: Model, family: Family, states: Array) -> MeasuredChamber | Array:
+        """What an equation's residual takes from the frame's states alone."""
         if family.equation == "breakaway":
-            return self._slips(model, q, states)
-        return self._chamber(model, states, claimed, family)
+            return np.empty(0)
+        if family.equation == "momentum":
+            return family.window.apply(family.window.second, states[:, 0])
+        return Chamber(model, family.equation[-1]).measured(family.window, states)
+
+    def _value(
+        self, model: Model, q: Array, variant: Followed, family: Family, measured: MeasuredChamber | Array
+    ) -> Array:
+        if isinstance(measured, MeasuredChamber):
+            return measured.value(variant.claimed[:, 1 if family.equation == "chamber_a" else 2])
+        if family.equation == "breakaway":
+            return self._slips(model, q, variant.states)
+        return self._momentum(model, q, variant, family, measured)
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
         """What the model with parameters `q` shows at the given states (rows, states) of these samples."""
@@ -118,15 +136,12 @@ class Course:
         model.kernel.observe(np.ascontiguousarray(states), q, self.held[rows], self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
-    def _momentum(self, model: Model, q: Array, states: Array, claimed: Array, family: Family) -> Array:
+    def _momentum(self, model: Model, q: Array, variant: Followed, family: Family, acceleration: Array) -> Array:
+        """Force (windows,) that accelerates the mass as measured, less as claimed."""
         bump = family.window
-        rows = bump.centres(len(states))
-        mass = model["piston.mass"] + self._see(model, q, states[rows], rows)["added_mass"]
-        return Momentum.value(bump, mass, states[:, 0], claimed[:, 0])
-
-    def _chamber(self, model: Model, states: Array, claimed: Array, family: Family) -> Array:
-        equation = Chamber(model, family.equation[-1])
-        return equation.value(family.window, states, claimed[:, equation.column - 1])
+        rows = bump.centres(len(variant.states))
+        mass = model["piston.mass"] + self._see(model, q, variant.states[rows], rows)["added_mass"]
+        return np.asarray(mass * (acceleration - bump.apply(bump.phi, variant.claimed[:, 0])))
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed there and then."""

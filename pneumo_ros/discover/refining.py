@@ -28,7 +28,7 @@ def refine(
 ) -> list[Hypothesis]:
     """Gauss-Newton of all coordinates of some candidates at once, each with its own step control.
 
-    Unless they are `settled`, each begins at the best of a few sizes.
+    Unless they are `settled`, each begins at the best of a few sizes, and is fitted as exactly as ranking asks for.
     """
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
     trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
@@ -42,7 +42,7 @@ def refine(
             variants += [_values(best[i], v) for v in (trial[i], *probes)]
         if not moving:
             break
-        residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+        residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
         for i in tuple(moving):
             h, u, at = best[i], trial[i], spans[i]
             C = known[i] if i in known else _slopes(h, u, residual[at : at + 1 + len(u)])
@@ -84,7 +84,7 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
     variants = [_values(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
     if not variants:
         return []
-    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
     found, at = [], 0
     for own in options:
         likelihood = [at_best(base, r)[2] for r in residual[at : at + len(own)]]

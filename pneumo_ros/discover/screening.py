@@ -65,7 +65,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
             own.append(values | shape | {effect[k].name: effect[k].value(u[k])})
         spans.append((len(variants), len(own), sizes))
         variants += own
-    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants))
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
     result: list[Hypothesis] = []
     for (name, effect, u), (first, count, sizes) in zip(tasks, spans, strict=True):
         change = (residual[first : first + count] - residual[0]).T

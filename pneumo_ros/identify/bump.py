@@ -38,20 +38,33 @@ class Bump:
         """Error of sums in place of integrals and of simulated friction, as a share of the integrand."""
         return factor / (self.width - 1) ** 2 + 1e-5
 
+    @property
+    def step(self) -> int:
+        """Samples from one window to the next: a quarter of the width."""
+        return max(self.width // 4, 1)
+
     def apply(self, weights: Array, signal: Array) -> Array:
         """Weighted sums (windows,) of a signal (n,) over windows a quarter of their width apart; none if n < width."""
-        return self._windows(signal) @ weights
+        if len(signal) < self.width:
+            return np.empty(0)
+        count, parts = (len(signal) - self.width) // self.step + 1, -(-self.width // self.step)
+        # Windows share quarters: each is multiplied once, by all weights that it meets.
+        quarters, columns = np.zeros((count + parts - 1, self.step)), np.zeros((parts, self.step))
+        own = min(len(signal), quarters.size)
+        quarters.ravel()[:own], columns.ravel()[: self.width] = signal[:own], weights
+        shares = quarters @ columns.T
+        return np.asarray(sum(shares[k : k + count, k] for k in range(parts)))
 
     def centres(self, samples: int) -> NDArray[np.int64]:
         """Sample at the middle of each window of a signal of that many samples."""
-        first = np.arange(max(samples - self.width + 1, 0), step=max(self.width // 4, 1))
+        first = np.arange(max(samples - self.width + 1, 0), step=self.step)
         return np.asarray(first + self.width // 2, dtype=np.int64)
 
     def _windows(self, signal: Array) -> Array:
         if len(signal) < self.width:
             return np.empty((0, self.width))
         every = np.lib.stride_tricks.sliding_window_view(signal, self.width)
-        return np.asarray(every[:: max(self.width // 4, 1)])
+        return np.asarray(every[:: self.step])
 
     def noise(self, terms: list[tuple[Array, Array]]) -> Array:
         """Standard deviation (windows,) of a residual that unit white noise enters by the sum over `terms`.

@@ -10,6 +10,8 @@ the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction do
 velocity does to it, int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise stated with each residual.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -85,9 +87,14 @@ class Chamber:
 
     def value(self, bump: Bump, states: Array, pressure_rate: Array) -> Array:
         """Residual (windows,), with the pressure derivative (n,) that the model claims along the states."""
-        p, rate = states[:, self.column], self._rate(states, pressure_rate)
+        return self.measured(bump, states).value(pressure_rate)
+
+    def measured(self, bump: Bump, states: Array) -> "MeasuredChamber":
+        """What the residual takes from the states alone."""
+        p = states[:, self.column]
         log = np.log(p) + self.gamma * np.log(self.volume(states[:, 0]))
-        return np.asarray(self._content(bump, states) * (bump.apply(-bump.first, log) - bump.apply(bump.phi, rate)))
+        rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, self._rate(states, np.zeros(len(p))))
+        return MeasuredChamber(bump, self._content(bump, states), rate, 1.0 / p)
 
     def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
         """Standard deviation (windows,) that sensor noise and sums alone give.
@@ -116,6 +123,25 @@ class Chamber:
         """Mass per unit of ln p (windows,) [kg]."""
         R_T = self.model["air.gas_constant"] * self.model["air.temperature"]
         return bump.apply(bump.phi, states[:, self.column] * self.volume(states[:, 0]) / (self.gamma * R_T))
+
+
+@dataclass(frozen=True)
+class MeasuredChamber:
+    """What measurements say of a chamber in windows, whatever a model claims.
+
+    content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow per content [1/s]; per_pressure (n,):
+    1 / p [1/Pa].
+    """
+
+    bump: Bump
+    content: Array
+    rate: Array
+    per_pressure: Array
+
+    def value(self, pressure_rate: Array) -> Array:
+        """Residual (windows,) [kg/s], with the pressure derivative (n,) that a model claims."""
+        claimed = self.bump.apply(self.bump.phi, pressure_rate * self.per_pressure)
+        return np.asarray(self.content * (self.rate - claimed))
 
 
 def measured_throughout(run: Run, bump: Bump) -> Mask:

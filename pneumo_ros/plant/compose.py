@@ -139,7 +139,7 @@ class Resolver:
                 raise UsageError(f"effect {effect.name}: {unknown_name('argument', name, known)}")
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)  # a diagnosis tries some thirty effects beside each model, again and again
 def compose(effects: tuple[type[Effect], ...]) -> Composition:
     """Compose effects, in the given order, into one kernel.
 

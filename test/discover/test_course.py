@@ -21,7 +21,7 @@ def variants(model: Model) -> np.ndarray:
 
 
 def driven(rows: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    return {k: (x, mean) for k, x, mean in follow_each(LATE, frame_of(RUN, False), rows)}
+    return {v.index: (v.states, v.claimed) for v in follow_each(LATE, frame_of(RUN, False), rows)}
 
 
 def test_variants_with_the_same_sensors_are_one_group() -> None:

@@ -48,6 +48,19 @@ def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
     assert min(moved) > 1.0, "every variant shows"
 
 
+FAST = {"valve_spool_dynamics.angular_frequency": 60.0, "position_sensor_delay.delay": 0.01, "line_delay.delay": 0.006}
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_ranking_errs_by_hundredths_of_an_effect(name: str) -> None:
+    model, _, run = own("sweep")
+    whole = everything(model, missing(model))
+    evidence, variants = Evidence(model, [run]), vectors(whole, [{}, {name: FAST[name]}])
+    exact, ranked = (np.diff(evidence.residuals(whole, variants, ranking=r), axis=0) for r in (False, True))
+    error = np.sqrt(np.mean((ranked - exact) ** 2) / np.mean(exact**2))
+    assert 0.0 < error < 0.03, "and is not the same evaluation"
+
+
 def test_part_of_the_evidence_is_that_of_its_runs() -> None:
     model, _, first = own("steps")
     _, _, second = own("sweep")

@@ -185,6 +185,17 @@ def test_the_test_function_takes_means_and_derivatives(samples: int) -> None:
     assert bump.apply(bump.second, 0.5 * 9.81 * t**2) == pytest.approx(9.81, rel=1e-9)
 
 
+@pytest.mark.parametrize("samples", [11, 41, 101])
+@pytest.mark.parametrize("more", [-1, 0, 1, 24, 25, 26, 1000])
+def test_every_window_is_summed_by_itself(samples: int, more: int) -> None:
+    bump = Bump.of((samples - 1) * 1e-3, 1e-3)
+    signal = np.random.default_rng(samples).normal(size=samples + more)
+    step = samples // 4
+    alone = [bump.phi @ signal[k : k + samples] for k in range(0, more + 1, step)]
+    assert bump.apply(bump.phi, signal) == pytest.approx(alone, abs=1e-12)
+    assert len(bump.centres(len(signal))) == len(alone)
+
+
 def test_windows_lie_a_quarter_of_their_width_apart() -> None:
     model, _, run = own("steps", seconds=5.0)
     np.testing.assert_allclose(np.diff(equation_residuals(model, run)["chamber_a"].time), 0.05, rtol=1e-9)
