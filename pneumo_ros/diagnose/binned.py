@@ -29,7 +29,8 @@ class Bins:
 
 def clusters(time: Array, run: Index, duration: float = CLUSTER) -> Index:
     """A number for each value: the same for those of one run within the same `duration` [s]."""
-    pairs = np.stack([run, np.floor(time / duration).astype(np.int64)], axis=1)
+    whole = np.floor(time / duration + 1e-9)  # 1.2 s are three times 0.4 s, whatever rounding makes of both
+    pairs = np.stack([run, whole.astype(np.int64)], axis=1)
     return np.asarray(np.unique(pairs, axis=0, return_inverse=True)[1], dtype=np.int64).reshape(-1)
 
 

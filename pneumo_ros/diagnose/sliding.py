@@ -79,7 +79,7 @@ def _windows(model: Model, course: Along) -> tuple[Array, Array, Array, Array]:
     direction = bump.apply(np.ones(bump.width), np.where(away, np.sign(course.velocity), 0.0))
     sliding = np.abs(direction) > bump.width - 0.5
     return (
-        mean(run.time)[sliding],
+        run.time[bump.centres(len(run))][sliding],
         mean(course.velocity)[sliding],
         measured[sliding],
         mean(course.seen["friction"])[sliding],

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs
 
+from pneumo_ros.diagnose.binned import clusters
 from pneumo_ros.discover.course import Followed, follow_each, frame_of
 from pneumo_ros.discover.families import Family, families
 from pneumo_ros.identify.breakaway import REST
@@ -54,7 +55,7 @@ class Evidence:
         self.run = np.repeat([f.run for f in families], counts)
         self.time = np.concatenate([f.time[f.usable] for f in families])
         self.drive = float(np.sqrt(np.mean(np.concatenate([course.drive**2 for course in self.courses]))))
-        self.block = np.unique((self.run * 100000 + self.time / BLOCK).astype(np.int64), return_inverse=True)[1]
+        self.block = clusters(self.time, self.run, BLOCK)
 
     def __len__(self) -> int:
         return len(self.noise)

@@ -66,4 +66,4 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
 def _family(
     equation: str, width: float, index: int, run: Run, bump: Bump, noise: Array, usable: NDArray[np.bool_]
 ) -> Family:
-    return Family(equation, width, index, bump.apply(bump.phi, run.time), noise, usable, bump)
+    return Family(equation, width, index, run.time[bump.centres(len(run))], noise, usable, bump)

@@ -97,6 +97,6 @@ def _chamber(model: Model, run: Run, states: Array, claimed: Array, chamber: str
 def _residual(
     equation: str, unit: str, run: Run, bump: Bump, value: Array, noise: Array, usable: NDArray[np.bool_]
 ) -> Residual:
-    centre = bump.apply(bump.phi, run.time)
+    centre = run.time[bump.centres(len(run))]
     good = usable & np.isfinite(value)
     return Residual(equation, unit, centre[good], value[good], np.broadcast_to(noise, value.shape)[good])

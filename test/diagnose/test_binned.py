@@ -75,3 +75,9 @@ def test_clusters_are_of_one_run_and_half_a_second() -> None:
     found = clusters(time, np.array([0, 0, 0, 1]))
     assert found[0] == found[1]
     assert len({found[0], found[2], found[3]}) == 3
+
+
+def test_a_window_at_the_end_of_a_cluster_is_of_the_next_however_it_is_rounded() -> None:
+    exact = np.arange(0.0, 100.0, 0.4)
+    lanes = [clusters(exact * (1.0 + e), np.zeros(len(exact), dtype=np.int64), 0.4) for e in (-2e-16, 0.0, 2e-16)]
+    assert all(np.array_equal(found, np.arange(len(exact))) for found in lanes)

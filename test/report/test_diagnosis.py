@@ -33,6 +33,12 @@ def text_of(verdict: str) -> str:
     return page_html(diagnosis_of(diagnosed(verdict)))
 
 
+def followed() -> str:
+    """The variable that explains most of the momentum's residual before anything was added."""
+    against = diagnosed(FOUND).before.dependences["momentum"]
+    return max(against, key=lambda name: against[name].explained_share)
+
+
 @pytest.fixture(scope="module")
 def opened(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Open]:
     """The page of a verdict in a browser: one for all tests, which leave it as they found it."""
@@ -77,7 +83,7 @@ def test_every_plot_is_drawn_and_nothing_is_asked_for(opened: Open, verdict: str
     visit.page.evaluate("document.querySelectorAll('details').forEach(one => one.open = true)")
     names = visit.page.eval_on_selector_all(".plot", "all => all.map(one => one.id)")
     own = {"waterfall", "evidence-t", "evidence-gain"}
-    assert own | {"remains-shape" if verdict == UNKNOWN else "residual-momentum-velocity"} <= set(names)
+    assert own | {"remains-shape" if verdict == UNKNOWN else f"residual-momentum-{followed()}"} <= set(names)
     visit.show(*names)
     assert len(visit.requests) == 1
     assert visit.complaints == []
@@ -129,11 +135,12 @@ def test_the_evidence_stands_in_table_and_bars(opened: Open) -> None:
 
 def test_the_residual_before_and_after_is_that_of_the_comparisons(opened: Open) -> None:
     visit, outcome = opened(FOUND), diagnosed(FOUND)
-    visit.show("residual-momentum-velocity")
-    traces = {trace["name"]: trace for trace in visit.traces("residual-momentum-velocity")}
+    plot, variable = f"residual-momentum-{followed()}", followed()
+    visit.show(plot)
+    traces = {trace["name"]: trace for trace in visit.traces(plot)}
     for name, comparison in (("refitted", outcome.before), ("final model", outcome.after)):
         shown = [y for y in traces[name]["y"] if y is not None]
-        assert shown == pytest.approx(comparison.dependences["momentum"]["velocity"].bins.mean, rel=1e-4)
+        assert shown == pytest.approx(comparison.dependences["momentum"][variable].bins.mean, rel=1e-4)
 
 
 def test_what_remains_is_drawn_or_said_to_be_nothing(opened: Open) -> None:
@@ -193,7 +200,7 @@ def test_figures_have_names_of_their_own_and_words() -> None:
 
 def test_its_figures_can_be_drawn_as_files(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib", reason="comes with the extra 'figures'")
-    names = ("waterfall", "evidence-t", "residual-momentum-velocity")
+    names = ("waterfall", "evidence-t", f"residual-momentum-{followed()}")
     draw_charts([one for one in diagnosis_of(diagnosed(FOUND)).charts() if one.name in names], tmp_path)
     assert {path.stem for path in tmp_path.iterdir()} == set(names)
     drawn = (tmp_path / "waterfall.svg").read_text(encoding="utf-8")
