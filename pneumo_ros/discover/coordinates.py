@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 
 _FACTOR = 4.0  # between the shapes that are tried first
 _TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many either way: broad resonances overlap
+_FREQUENCY = ("Hz", "rad/s")
 _RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
 _FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
@@ -44,7 +45,12 @@ class Coordinate:
     @property
     def tuned(self) -> bool:
         """Whether the parameter is the frequency of something that rings: seen near its resonance, nowhere else."""
-        return self.logarithmic and not self.is_size and self.unit in ("Hz", "rad/s")
+        return self.logarithmic and not self.is_size and self.unit in _FREQUENCY
+
+    @property
+    def fading_frequency(self) -> bool:
+        """Whether the parameter is the frequency of something that lags, and the higher the less."""
+        return self.logarithmic and self.is_size and self.unit in _FREQUENCY
 
     @property
     def share(self) -> bool:

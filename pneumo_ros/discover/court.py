@@ -67,9 +67,21 @@ def put_on_trial(
     return sorted(found, key=lambda trial: -trial.score)
 
 
+def sizes(own: Sequence[Coordinate], at: Array) -> Array:
+    """Sizes (own,) of an effect in usual ones, 0 of what only shapes it; at (own,): where it is in its coordinates.
+
+    What is damped more than usual lags by its damping, too: by 2 zeta / omega, and a first order by nothing else.
+    """
+    values = [(c, float(u)) for c, u in zip(own, at, strict=True)]
+    damping = max((c.value(u) / c.typical for c, u in values if c.name.endswith(".damping_ratio")), default=1.0)
+    return np.array(
+        [c.size(u) * (max(damping, 1.0) if c.fading_frequency else 1.0) if c.is_size else 0.0 for c, u in values]
+    )
+
+
 def magnitude(own: Sequence[Coordinate], at: Array) -> float:
     """Largest size of an effect in usual ones; at (own,): where it is in its coordinates."""
-    return max((abs(c.size(float(u))) for c, u in zip(own, at, strict=True) if c.is_size), default=0.0)
+    return float(np.max(np.abs(sizes(own, at)), initial=0.0))
 
 
 def size_in(model: Model, name: str) -> float:

@@ -3,7 +3,10 @@
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from pneumo_ros.diagnose.wording import number, percent
+from pneumo_ros.discover.court import sizes
 from pneumo_ros.discover.trial import GAIN_LEAST, T_LEAST
 from pneumo_ros.report.candidate_charts import candidate_charts
 from pneumo_ros.report.chart import Section
@@ -73,15 +76,12 @@ def _bounds(trial: "Trial") -> tuple[float, float] | None:
     h = trial.hypothesis
     if len(h.covariance) != len(h.coordinates):
         return None
-    found = []
-    for c, u, variance in zip(h.coordinates, h.u, h.covariance.diagonal(), strict=True):
-        spread = NORMAL * math.sqrt(max(float(variance), 0.0))
-        if c.is_size and c.logarithmic:
-            size = c.typical / c.value(float(u))
-            found.append((size, size * math.exp(-spread), size * math.exp(spread)))
-        elif c.is_size:
-            found.append((abs(float(u)), abs(float(u)) - spread, abs(float(u)) + spread))
-    return max(found)[1:] if found else None
+    here = sizes(h.coordinates, h.u)
+    largest = int(np.argmax(np.abs(here)))
+    spread = np.zeros(len(here))
+    spread[largest] = NORMAL * math.sqrt(max(float(h.covariance[largest, largest]), 0.0))
+    ends = [sizes(h.coordinates, h.u + off)[largest] * np.sign(here[largest]) for off in (-spread, spread)]
+    return float(min(ends)), float(max(ends))
 
 
 def _reason(outcome: "Outcome", one: "Ranked", found: str) -> Html:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.discover.coordinates import coordinates
-from pneumo_ros.discover.court import size_in, stable, undetermined
+from pneumo_ros.discover.court import magnitude, size_in, stable, undetermined
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.discover.steps import Step, without
@@ -62,6 +62,13 @@ def test_sizes_are_told_in_usual_ones(effect: str, values: dict[str, float], mat
     given = {f"{effect}.{key}": value for key, value in values.items()}
     model = MODEL.with_effects([*MODEL.effects, effect], given)
     assert (size_in(model, effect) > MATERIAL) is material
+
+
+def test_a_spool_damped_like_a_first_order_is_as_large_as_its_lag() -> None:
+    own = coordinates(MODEL.library.find("valve_spool_dynamics"))
+    ringing, lagging = (magnitude(own, np.array([own[0].u(400.0), own[1].u(zeta)])) for zeta in (0.5, 2.8))
+    assert ringing == pytest.approx(magnitude(own, np.array([own[0].u(400.0), own[1].u(0.7)])))
+    assert lagging == pytest.approx(4.0 * ringing)
 
 
 @pytest.mark.parametrize(
