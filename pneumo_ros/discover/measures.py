@@ -63,8 +63,12 @@ def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, fl
 
 
 def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
-    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks."""
-    first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
+    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks.
+
+    In `rows` (residuals,); where hardly a breakaway is in them, as when each changes a little, of all breakaways.
+    """
+    whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEW} for r in (before, after)]
+    first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
     noise = {name: NOISE.get(name, 1.0) for name in first}
     shares = ((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
     return max(shares, default=0.0)

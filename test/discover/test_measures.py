@@ -55,3 +55,12 @@ def test_one_wild_breakaway_says_nothing_against_the_others() -> None:
     assert gains(slips, before, after)["breakaway"] < -1.0
     assert usual_gains(slips, before, after)["breakaway"] > -0.1
     assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them do
+
+
+@pytest.mark.parametrize(("name", "least"), [("breakaway", 0.9), ("chamber_a 200 ms", 0.0)])
+def test_breakaways_that_all_change_a_little_are_judged_together(name: str, least: float) -> None:
+    """There are twenty of them at most, and their noise is generous: none changes by a quarter of it."""
+    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=np.zeros(20, dtype=np.int64)))
+    before, after = np.full(20, 0.95), np.full(20, 0.75)
+    assert not acting(before, after).any()
+    assert explained(evidence, before, after, acting(before, after)) == pytest.approx(least, abs=0.1)
