@@ -1,12 +1,12 @@
 """A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base
+from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base, strain
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.freedom import conditions, freed, relative
@@ -16,6 +16,7 @@ from pneumo_ros.discover.hypothesis import (
     cluster_robust,
     everything,
     family_scales,
+    log_likelihood,
     missing,
     weights,
 )
@@ -27,6 +28,8 @@ Array = NDArray[np.float64]
 
 KNOWN, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
 STEP = 0.005  # of a prior, or of what is usual of an effect
+FEW = 3  # sizes: of a profile, each is asked for
+AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
 
@@ -43,12 +46,12 @@ class Fitter:
         self.train, self.held = Evidence(start, train), Evidence(start, held)
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
 
-    def known(self, model: Model) -> Known:
-        """Of the free parameters of `model`, what is known: the start's to a few per cent, added ones hardly."""
+    def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
+        """Of the free parameters of `model` but those `fixed`: the start's to a few per cent, added ones hardly."""
         names, centre, prior, step = [], [], [], []
         for name in default_free(model):
             section, _, _key = name.partition(".")
-            if name in UNSEEN:
+            if name in UNSEEN or name in fixed:
                 continue
             if section in self.start.effects:
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))
@@ -63,9 +66,32 @@ class Fitter:
             step.append(STEP * usual)
         return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
 
-    def refit(self, model: Model, iterations: int = ITERATIONS) -> Model:
-        """All free parameters fitted to the training evidence."""
-        return fit_base(self.train, model, self.known(model), iterations)
+    def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:
+        """All free parameters but those `fixed` fitted to the training evidence."""
+        return fit_base(self.train, model, self.known(model, fixed), iterations)
+
+    def simplest(self, model: Model, name: str) -> Model:
+        """The model, or one refitted with a size of its effect `name` neutral, if that explains as much.
+
+        Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they stand in for each other
+        over wide ranges, and a fit of both may end in a valley far from the true one.
+        """
+        sizes = [c for c in coordinates(model.library.find(name)) if c.is_size]
+        if len({(c.unit, c.neutral, c.low, c.high) for c in sizes}) == 1 or len(sizes) > FEW:
+            return model
+        best, least = model, self._likelihood(model) - AS_MUCH
+        for size in sizes:
+            if model[size.name] != size.neutral:
+                simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
+                if (found := self._likelihood(simpler)) > least:
+                    best, least = simpler, found
+        return best
+
+    def _likelihood(self, model: Model) -> float:
+        """Log likelihood of the training evidence and of what is known of the parameters."""
+        known = self.known(model)
+        offset = (np.array([model[n] for n in known.names]) - known.centre) / known.prior
+        return log_likelihood(self.train, self.train.residual(model)) - strain(offset)
 
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""

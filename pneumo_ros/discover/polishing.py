@@ -4,7 +4,7 @@ Along the signals a static friction off by 3 % costs next to nothing; in predict
 noise deviations, by a breakaway that comes too late.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -30,19 +30,22 @@ def polish(
     runs: Sequence[Run],
     most: int = SEGMENTS,
     *,
+    sure: Mapping[str, float] | None = None,
     threads: int = 2,
     progress: Progress | None = None,
 ) -> Refit:
     """Multiple shooting from `model`, over at most `most` segments of all runs.
 
-    What is free and what was known of it are those of `fitter`; estimates tell what changed against its start.
+    What is free and what was known of it are those of `fitter`; estimates tell what changed against its start. `sure`:
+    standard deviations of parameters of `model` that hold them beside that, as far as they are smaller.
     """
-    known = fitter.known(model)
+    known, held = fitter.known(model), sure or {}
     samples = max(round(SEGMENT / runs[0].sample_time), 2)
     segments = cut_at(model, runs, telling(model, runs, samples, most), samples)
     widths = dict(zip(known.names, known.prior.tolist(), strict=True))
     centre = dict(zip(known.names, known.centre.tolist(), strict=True))
-    found = refit_segments(model, segments, known.names, widths, threads=threads, progress=progress)
+    holding = {name: min(held.get(name, np.inf), width) for name, width in widths.items()}
+    found = refit_segments(model, segments, known.names, holding, threads=threads, progress=progress)
     estimates = {n: replace(e, before=centre[n], prior=widths[n]) for n, e in found.estimates.items()}
     return replace(found, estimates=estimates)
 

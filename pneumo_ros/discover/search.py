@@ -102,7 +102,8 @@ class Search:
 
     def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
         """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
-        new = self.polish(self.fitter.refit(self.fitter.extended(model, trial.hypothesis)))
+        new = self.fitter.refit(self.fitter.extended(model, trial.hypothesis))
+        new = self.polish(self.fitter.simplest(new, trial.name))
         std = self.fitter.deviations(new)
         gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or undetermined(new, n, std)]
         if gone:
@@ -124,7 +125,8 @@ class Search:
         if not model.force_driven and self.slips(model) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
-        new = polish(self.fitter, model, self.train.runs).model
+        sure = self.fitter.deviations(model)  # what equations along the motion say: segments alone bend it
+        new = polish(self.fitter, model, self.train.runs, sure=sure).model
         before, after = windowed(model, self.train.runs), windowed(new, self.train.runs)
         return new if all(after[name] <= before[name] for name in before) else model
 
