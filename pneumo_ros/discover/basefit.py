@@ -39,6 +39,10 @@ class Known:
     prior: Array
     step: Array
 
+    def offset(self, model: Model) -> Array:
+        """How far the parameters (free,) of `model` are from the centres, in standard deviations."""
+        return np.asarray((np.array([model[n] for n in self.names]) - self.centre) / self.prior)
+
 
 def strain(offset: Array) -> float:
     """Log likelihood that parameters cost by their priors; offset (free,): how far they are from the centres."""
@@ -99,10 +103,9 @@ def _cost(evidence: Evidence, r: Array, offset: Array, scale: Array) -> float:
 
 def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> BaseFit:
     """What hypotheses start from; `whole` is a model that holds `model` and every candidate."""
-    offset = (np.array([model[n] for n in known.names]) - known.centre) / known.prior
     r, J = slopes(evidence, model, known)
     held = whole.with_parameters({n: v for n, v in model.parameters.items() if n in whole.parameters})
-    return BaseFit(model, held, known.names, known.prior, offset, evidence, r, J)
+    return BaseFit(model, held, known.names, known.prior, known.offset(model), evidence, r, J)
 
 
 def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:

@@ -14,7 +14,7 @@ _TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many eith
 _FREQUENCY = ("Hz", "rad/s")
 _RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
-_FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
+FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
     if all(p.neutral is None for p in effect.parameters.values()):
         return ()
     found = tuple(_coordinate(effect, key) for key in effect.parameters)
-    many = sum(c.is_size for c in found) > _FEW
+    many = sum(c.is_size for c in found) > FEW
     return tuple(replace(c, wide=_PROFILE) for c in found) if many else found
 
 

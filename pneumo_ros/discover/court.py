@@ -95,8 +95,8 @@ def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
 
     Where the data say nothing at all, of infinite deviation, they do not say that either.
     """
-    sizes = [c for c in coordinates(model.library.find(name)) if c.is_size]
-    return all(abs(model[c.name] - (c.neutral or 0.0)) <= SURE * std[c.name] < np.inf for c in sizes)
+    fading = [c for c in coordinates(model.library.find(name)) if c.is_size]
+    return all(abs(model[c.name] - (c.neutral or 0.0)) <= SURE * std[c.name] < np.inf for c in fading)
 
 
 def stable(base: BaseFit, h: Hypothesis) -> bool:

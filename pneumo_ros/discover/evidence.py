@@ -16,12 +16,13 @@ from pneumo_ros.diagnose.binned import clusters
 from pneumo_ros.discover.course import Followed, follow_each, frame_of
 from pneumo_ros.discover.families import Family, families
 from pneumo_ros.identify.breakaway import REST
-from pneumo_ros.identify.equations import Chamber, MeasuredChamber
+from pneumo_ros.identify.equations import Chamber, MeasuredChamber, MeasuredMotion
 from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
 BLOCK = 0.4  # s: errors within a block belong together
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
@@ -110,39 +111,32 @@ class Course:
             if not variant.as_measured:
                 own = [self._measured(model, f, variant.states) for f in self.families]
             q = parameters[variant.index]
-            parts = [self._value(model, q, variant, f, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
+            parts = [self._value(model, q, variant, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
             result[variant.index] = np.concatenate(parts)
         return result
 
-    def _measured(self, model: Model, family: Family, states: Array) -> MeasuredChamber | Array:
+    def _measured(self, model: Model, family: Family, states: Array) -> Measured:
         """What an equation's residual takes from the frame's states alone."""
         if family.equation == "breakaway":
-            return np.empty(0)
+            return None
         if family.equation == "momentum":
-            return family.window.apply(family.window.second, states[:, 0])
+            return MeasuredMotion.of(family.window, states[:, 0])
         return Chamber(model, family.equation[-1]).measured(family.window, states)
 
-    def _value(
-        self, model: Model, q: Array, variant: Followed, family: Family, measured: MeasuredChamber | Array
-    ) -> Array:
-        if isinstance(measured, MeasuredChamber):
-            return measured.value(variant.claimed[:, 1 if family.equation == "chamber_a" else 2])
-        if family.equation == "breakaway":
+    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured) -> Array:
+        if measured is None:
             return self._slips(model, q, variant.states)
-        return self._momentum(model, q, variant, family, measured)
+        if isinstance(measured, MeasuredChamber):
+            return measured.value(variant.claimed[:, measured.column - 1])
+        rows = measured.bump.centres(len(variant.states))
+        mass = model["piston.mass"] + self._see(model, q, variant.states[rows], rows)["added_mass"]
+        return measured.value(mass, variant.claimed[:, 0])
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
         """What the model with parameters `q` shows at the given states (rows, states) of these samples."""
         out = np.empty((len(rows), len(model.composition.observed)))
         model.kernel.observe(np.ascontiguousarray(states), q, self.held[rows], self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
-
-    def _momentum(self, model: Model, q: Array, variant: Followed, family: Family, acceleration: Array) -> Array:
-        """Force (windows,) that accelerates the mass as measured, less as claimed."""
-        bump = family.window
-        rows = bump.centres(len(variant.states))
-        mass = model["piston.mass"] + self._see(model, q, variant.states[rows], rows)["added_mass"]
-        return np.asarray(mass * (acceleration - bump.apply(bump.phi, variant.claimed[:, 0])))
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed there and then."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base, strain
-from pneumo_ros.discover.coordinates import Coordinate, coordinates
+from pneumo_ros.discover.coordinates import FEW, Coordinate, coordinates
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.freedom import conditions, freed, relative
 from pneumo_ros.discover.hypothesis import (
@@ -28,7 +28,6 @@ Array = NDArray[np.float64]
 
 KNOWN, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
 STEP = 0.005  # of a prior, or of what is usual of an effect
-FEW = 3  # sizes: of a profile, each is asked for
 AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -89,9 +88,7 @@ class Fitter:
 
     def _likelihood(self, model: Model) -> float:
         """Log likelihood of the training evidence and of what is known of the parameters."""
-        known = self.known(model)
-        offset = (np.array([model[n] for n in known.names]) - known.centre) / known.prior
-        return log_likelihood(self.train, self.train.residual(model)) - strain(offset)
+        return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model).offset(model))
 
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""

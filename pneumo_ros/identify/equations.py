@@ -49,7 +49,7 @@ class Momentum:
     @staticmethod
     def value(bump: Bump, mass: Array, position: Array, acceleration: Array) -> Array:
         """Residual (windows,): `mass` (windows,) [kg] moves as measured, and as claimed by `acceleration` (n,)."""
-        return np.asarray(mass * (bump.apply(bump.second, position) - bump.apply(bump.phi, acceleration)))
+        return MeasuredMotion.of(bump, position).value(mass, acceleration)
 
     def noise(self, bump: Bump) -> Array:
         """Standard deviation (windows,) that sensor noise and sums over samples alone give."""
@@ -94,7 +94,7 @@ class Chamber:
         p = states[:, self.column]
         log = np.log(p) + self.gamma * np.log(self.volume(states[:, 0]))
         rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, self._rate(states, np.zeros(len(p))))
-        return MeasuredChamber(bump, self._content(bump, states), rate, 1.0 / p)
+        return MeasuredChamber(bump, self.column, self._content(bump, states), rate, 1.0 / p)
 
     def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
         """Standard deviation (windows,) that sensor noise and sums alone give.
@@ -126,14 +126,32 @@ class Chamber:
 
 
 @dataclass(frozen=True)
+class MeasuredMotion:
+    """What measurements say of the motion in windows, whatever a model claims; acceleration (windows,) [m/s2]."""
+
+    bump: Bump
+    acceleration: Array
+
+    @classmethod
+    def of(cls, bump: Bump, position: Array) -> "MeasuredMotion":
+        """From a position (n,) [m]."""
+        return cls(bump, bump.apply(bump.second, position))
+
+    def value(self, mass: Array, acceleration: Array) -> Array:
+        """Residual (windows,) [N] of `mass` (windows,) [kg], with the acceleration (n,) that a model claims."""
+        return np.asarray(mass * (self.acceleration - self.bump.apply(self.bump.phi, acceleration)))
+
+
+@dataclass(frozen=True)
 class MeasuredChamber:
     """What measurements say of a chamber in windows, whatever a model claims.
 
-    content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow per content [1/s]; per_pressure (n,):
-    1 / p [1/Pa].
+    column: of its pressure among the states; content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow
+    per content [1/s]; per_pressure (n,): 1 / p [1/Pa].
     """
 
     bump: Bump
+    column: int
     content: Array
     rate: Array
     per_pressure: Array
