@@ -175,12 +175,14 @@ def _left(result: Mapping[str, Any]) -> str:
     left = result["unexplained"]
     ratio = result["equations"]["after"][left["equation"]]["ratio_to_noise"]
     size = f"{amount(left['residual_rms'], left['equation'])} rms, {times(ratio)} the noise"
-    if not left["shape"] or left["explained_share"] is None or left["explained_share"] < FOLLOWS:
-        return f"{size}, and it follows none of position, velocity, voltage, pressures and time"
+    share = left["explained_share"]
+    if not left["shape"] or share is None or share < FOLLOWS:
+        most = f"more than {percent(share)} of it" if left["shape"] and share else "any of it"
+        return f"{size}; none of position, velocity, voltage, pressures and time explains {most}"
     words, unit, factor = VARIABLES[left["against"]]
     (x0, y0), (x1, y1) = (pick(left["shape"], key=lambda point: point[1]) for pick in (min, max))
     return (
-        f"{size}; {percent(left['explained_share'])} of it follows {words}, from {amount(y0, left['equation'])} at "
+        f"{size}; {percent(share)} of it follows {words}, from {amount(y0, left['equation'])} at "
         f"{number(factor * x0)} {unit} to {amount(y1, left['equation'])} at {number(factor * x1)} {unit}"
     )
 

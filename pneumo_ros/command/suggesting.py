@@ -44,6 +44,6 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Co
 
 def _showing(left: "Unexplained", machine: str) -> str:
     return (
-        f"To see more of what remains in {EQUATIONS[left.equation][0]}, which follows {VARIABLES[left.against][0]} "
+        f"To see more of what remains in {EQUATIONS[left.equation][0]}, of which {VARIABLES[left.against][0]} explains "
         f"most: pneumo experiment {SHOWING[left.against]} --model {machine}."
     )

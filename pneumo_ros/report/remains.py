@@ -60,8 +60,8 @@ def _words(outcome: "Outcome", left: "Unexplained") -> str:
     if left.share >= FOLLOWS:
         return f"{sentence(variable)} explains {percent(left.share)} of the squared residual. {shape}."
     others = listed([VARIABLES[name][0] for name in outcome.after.dependences[left.equation]], "or")
-    share = f"{variable} explains most, {percent(left.share)} of the squared residual"
-    return f"It follows none of {others}: {share}. {shape}."
+    share = f"{variable}, which explains most, explains {percent(left.share)} of the squared residual"
+    return f"None of {others} explains much: {share}. {shape}."
 
 
 def _advice(experiment: str) -> Html:
