@@ -28,6 +28,7 @@ class Breakaway:
     force: float
     ramp: float  # [N/s], how fast the force rose before
     rest: float  # [s] at rest before
+    slip: float  # [m] from where it rested to where sliding is certain
 
     @property
     def spread(self) -> float:
@@ -54,7 +55,8 @@ def find_breakaways(model: Model, run: Run) -> list[Breakaway]:
             before = direction * force[max(at - rest, 0) : at + 1]
             ramp = float((before[-1] - before[0]) / (len(before) * run.sample_time))
             rested = (at - k) * run.sample_time
-            found.append(Breakaway(run.name, at, at * run.sample_time, direction, float(before.max()), ramp, rested))
+            time = at * run.sample_time
+            found.append(Breakaway(run.name, at, time, direction, float(before.max()), ramp, rested, slip))
         k = at
     return found
 

@@ -33,7 +33,7 @@ def points(
 
 
 def breakaway(force: float, direction: int = 1, ramp: float = 30.0) -> Breakaway:
-    return Breakaway("run 0", 1000, 1.0, direction, force, ramp, 1.0)
+    return Breakaway("run 0", 1000, 1.0, direction, force, ramp, 1.0, 4e-4)
 
 
 def check(fit: MapFit, names: Sequence[str], within: float, model: Model | None = None) -> None:
