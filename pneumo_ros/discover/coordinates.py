@@ -122,6 +122,15 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit)
 
 
+def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
+    """The sizes of an effect by kind: alike in unit, bounds and neutral value, as the two directions' of one thing."""
+    found: dict[tuple[str, float | None, float, float], list[Coordinate]] = {}
+    for c in effect:
+        if c.is_size:
+            found.setdefault((c.unit, c.neutral, c.low, c.high), []).append(c)
+    return [tuple(own) for own in found.values()]
+
+
 def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
     """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,).
 

@@ -18,7 +18,7 @@ from pneumo_ros.discover.hypothesis import (
     weights,
 )
 from pneumo_ros.discover.measures import acting, advantage, explained, force, gains, usual_gains
-from pneumo_ros.discover.trial import T_LEAST, Trial
+from pneumo_ros.discover.trial import GAIN_LEAST, T_LEAST, Trial
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -165,8 +165,12 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
 
 
 def remaining(trial: Trial, first: dict[str, float], now: dict[str, float]) -> float:
-    """Share of what was left at first that is still there, in the equation where the trial helps most."""
-    name = max(trial.gain, key=lambda n: trial.gain[n] * now.get(n, 0.0))
+    """Share of what was left at first that is still there, in the equation where the trial helps most.
+
+    Of those in which its gain counts: a thousandth of a large rest elsewhere is more, and chance.
+    """
+    helped = [n for n, gain in trial.gain.items() if gain >= GAIN_LEAST] or list(trial.gain)
+    name = max(helped, key=lambda n: trial.gain[n] * now.get(n, 0.0))
     return now.get(name, 0.0) / first[name] if first.get(name) else 1.0
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base, strain
-from pneumo_ros.discover.coordinates import FEW, Coordinate, coordinates
+from pneumo_ros.discover.coordinates import FEW, Coordinate, coordinates, kinds
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.freedom import conditions, freed, relative
 from pneumo_ros.discover.hypothesis import (
@@ -75,8 +75,9 @@ class Fitter:
         Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they stand in for each other
         over wide ranges, and a fit of both may end in a valley far from the true one.
         """
-        sizes = [c for c in coordinates(model.library.find(name)) if c.is_size]
-        if len({(c.unit, c.neutral, c.low, c.high) for c in sizes}) == 1 or len(sizes) > FEW:
+        own = coordinates(model.library.find(name))
+        sizes = [c for c in own if c.is_size]
+        if len(kinds(own)) == 1 or len(sizes) > FEW:
             return model
         best, least = model, self._likelihood(model) - AS_MUCH
         for size in sizes:

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.court import magnitude
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
+from pneumo_ros.discover.measures import MOST_BLOCK
 from pneumo_ros.discover.mechanics import moves
+from pneumo_ros.discover.slip_starts import Start
 from pneumo_ros.discover.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
@@ -24,8 +26,7 @@ BLIND = 30.0  # t that the usual size of an effect would reach on the equations:
 SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 TRIED = 3  # candidates that are fitted, of all that begin well
 ENOUGH = 0.9  # share of the error beyond the noise's
-EVERY = 3  # of the events one is enough to begin by
-_SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
+SHARES = (0.5, 0.75)  # of the events, how far the best of which are off is looked at: half, else three in four
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,15 @@ def longer(
     """
     alone, found = made
     train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
-    if max(np.median(train), (usual := float(np.median(held)))) < POOR:
+    poor = [q for q in SHARES if max(np.quantile(train, q), np.quantile(held, q)) >= POOR]
+    if not poor:
         return model, None
-    tried = try_candidates(alone, found, blind(screened, alone), known, held)
-    trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, first) for c in tried]
+    q = poor[0]
+    tried = try_candidates(alone, found, blind(screened, alone), known, held, q)
+    samples = found.train(alone).samples
+    trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, q, samples, first) for c in tried]
     good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
+    usual = float(np.quantile(held, q))
     step = Step(model, tuple(trials), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
     if good:
         chosen = good[0][0]
@@ -61,47 +66,24 @@ def longer(
 
 
 def try_candidates(
-    alone: Model, found: Slips, names: Sequence[str], known: dict[str, float], held: Array
+    alone: Model, found: Slips, names: Sequence[str], known: dict[str, float], held: Array, q: float
 ) -> list[Slipping]:
-    """Those of the named effects that look best, fitted to the training events; best held-out median first.
+    """Those of the named effects that look best, fitted to the training events; smallest `q`-quantile of errors first.
 
     `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
     """
+    start = Start.of(alone, found, friction_priors(alone, known))
     with ThreadPoolExecutor(2) as pool:
-        begin = list(pool.map(lambda name: (*_begin(alone, found, name), name), names))
+        begin = list(pool.map(start.promise if q > SHARES[0] else start.sizes, names))
     result = []
-    for _, model, name in sorted(begin, key=lambda one: one[0])[:TRIED]:
+    for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
         refit = _fit(alone, found, model, name, known)
         fitted, std = refit.model, {n: e.std for n, e in refit.estimates.items() if n.startswith(f"{name}.")}
         train, after = (errors(fitted, events(fitted)) for events in (found.train, found.held))
         result.append(Slipping(name, fitted, train, after, std))
-        if share_removed(held, result[-1].held) > ENOUGH:
+        if share_removed(held, result[-1].held, q) > ENOUGH:
             break
-    return sorted(result, key=lambda s: float(np.median(s.train) + np.median(s.held)))
-
-
-def _begin(alone: Model, found: Slips, name: str) -> tuple[float, Model]:
-    """Where the fit of an effect begins, the best of some sizes, then of some shapes; before it, its median error."""
-    effect = coordinates(alone.library.find(name))
-    some = np.arange(0, len(found.train_rows), EVERY)
-
-    def tried(values: dict[str, float]) -> tuple[float, Model]:
-        model = alone.with_effects([*alone.effects, name], values)
-        return float(np.median(errors(model, found.train(model).pick(some)))), model
-
-    options = [tried(_values(effect, share)) for share in _SIZES]
-    shapes = [c for c in effect if c.logarithmic and not c.is_size]
-    for c in shapes:
-        best = min(options, key=lambda option: option[0])[1]
-        own = {k.name: best[k.name] for k in effect}
-        options += [tried(own | {c.name: c.value(np.log(factor))}) for factor in _FACTORS]
-    return min(options, key=lambda option: option[0])
-
-
-def _values(effect: tuple[Coordinate, ...], share: float) -> dict[str, float]:
-    """Parameters of an effect of that share of its usual size, in its usual shape."""
-    size = {True: -float(np.log(share)), False: share}  # whether what grows is the inverse of the parameter
-    return {c.name: c.value(size[c.logarithmic] if c.is_size else 0.0) for c in effect}
+    return sorted(result, key=lambda s: float(np.quantile(s.train, q) + np.quantile(s.held, q)))
 
 
 def _fit(alone: Model, found: Slips, begin: Model, name: str, known: dict[str, float]) -> Refit:
@@ -124,16 +106,20 @@ def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
     return [n for n in few if seen[n] < BLIND or library.find(n).states]
 
 
-def share_removed(before: Array, after: Array) -> float:
-    """Share of the median error beyond the noise's that is gone."""
-    first, second = float(np.median(before)), float(np.median(after))
+def share_removed(before: Array, after: Array, q: float) -> float:
+    """Share of the `q`-quantile of errors beyond the noise's that is gone."""
+    first, second = float(np.quantile(before, q)), float(np.quantile(after, q))
     return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
 
 
-def deviations_better(before: Array, after: Array) -> float:
-    """By how many deviations more events than half got better (sign test)."""
-    wins, count = int(np.sum(after < before)), len(before)
-    return float((wins - 0.5 * count) / (0.5 * np.sqrt(count))) if count else 0.0
+def deviations_better(before: Array, after: Array, samples: int) -> float:
+    """By how many deviations events of that many samples got better: their log likelihoods, none of which decides.
+
+    Vuong's (1989), as of blocks of time: events that an effect does not touch say nothing.
+    """
+    saved = np.clip(0.5 * samples * (before - after), -MOST_BLOCK, MOST_BLOCK)
+    spread = float(np.sqrt(np.sum(saved**2)))
+    return float(np.sum(saved)) / spread if spread > 0.0 else 0.0
 
 
 def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
@@ -141,17 +127,29 @@ def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
     return k.is_size and abs(value - (k.neutral or 0.0)) > 2.0 * std.get(k.name, np.inf)
 
 
-def as_trial(c: Slipping, effect: tuple[Coordinate, ...], base_train: Array, base_held: Array, first: bool) -> Trial:
-    """The candidate in the form in which all candidates are judged."""
+def as_trial(
+    c: Slipping,
+    effect: tuple[Coordinate, ...],
+    base_train: Array,
+    base_held: Array,
+    q: float,
+    samples: int,
+    first: bool,
+) -> Trial:
+    """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
+
+    `samples` of an event. All events together tell whether there is an effect, those held out whether it predicts.
+    """
     u = np.array([k.u(c.model[k.name]) for k in effect])
-    z_train, z_held = deviations_better(base_train, c.train), deviations_better(base_held, c.held)
-    h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=z_train)
-    gain = 1.0 - float(np.median(c.held) / np.median(base_held))
-    share = share_removed(base_held, c.held)
+    every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
+    h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
+    gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
+    share = share_removed(base_held, c.held, q)
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is no larger than its uncertainty"
+    z = deviations_better(base_held, c.held, samples)
     return Trial(
-        h, np.empty(0), {"slip": gain}, z_held, magnitude(effect, u), True, share, first, 0.0,
-        float(np.median(base_train) - np.median(c.train)), refused=enough, std=c.std,
+        h, np.empty(0), {"slip": gain}, z, magnitude(effect, u), True, share, first, 0.0,
+        float(np.quantile(base_train, q) - np.quantile(c.train, q)), refused=enough, std=c.std,
     )  # fmt: skip

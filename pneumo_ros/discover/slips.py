@@ -1,8 +1,8 @@
 """What no equation along the motion shows: effects that act between sticking and sliding, judged by short simulations.
 
 The mechanics alone are simulated through breakaways, stops and reversals, every start fitted anew. How well a model
-does is told by the median over events of the squared error per sample: a single breakaway caught a moment too early or
-too late, which no start mends, says nothing.
+does is told by the median over events of the squared error per sample, or by their upper quartile: a single breakaway
+caught a moment too early or too late, which no start mends, says nothing.
 """
 
 from collections.abc import Sequence
@@ -24,9 +24,12 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
+STATIC, COMMON = "lugre_friction.static_friction", 0.005
 FEWEST = 12  # events
 SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
-POOR = 1.5  # median squared error per sample over the noise's: above, something between stick and slip is missing
+POOR = (
+    1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
+)
 STALLED = 0.5  # of the error it began with: a refit that leaves more is not begun anew
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
 FEW = 3  # parameters: the events are too few to fit more
@@ -84,10 +87,10 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
         if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
             sure = known[name] < SURE * abs(alone[name])
             prior[name] = known[name] if sure else LOOSE * abs(alone[name])
-    best, left = alone, float(np.median(errors(alone, found.train(alone))))
+    best, left = alone, _level(errors(alone, found.train(alone)))
     while True:
         new = refit_segments(best, found.train(best), list(prior), prior).model
-        before, left = left, float(np.median(errors(new, found.train(new))))
+        before, left = left, _level(errors(new, found.train(new)))
         if not left < before:
             return best
         best = new
@@ -95,7 +98,15 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
             return best
 
 
+def _level(errors: Array) -> float:
+    """Geometric mean: a breakaway at the wrong moment counts, but not as much as it errs."""
+    return float(np.exp(np.mean(np.log(errors))))
+
+
 def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
-    """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %."""
-    names = [f"lugre_friction.{key}" for key in FREE]
-    return {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in names}
+    """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %.
+
+    Static friction at least half a per cent: by that much breakaways may all be off together, after how long slips take.
+    """
+    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in (f"lugre_friction.{key}" for key in FREE)}
+    return prior | {STATIC: max(prior[STATIC], COMMON * alone[STATIC])}

@@ -23,6 +23,7 @@ MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a qua
 MOSTLY = 0.6  # of an equation's mean square, noise and all, on held-out runs
 PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
 SLOW = 10.0
+MECHANICS = ("momentum", "breakaway")  # equations that show a texture of friction
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ class Trial:
             found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")
         if self.rest < REST_LEAST and self.share < NEARLY:
             found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
-        alone = self.first and (self.force > 1.0 or equation_helped(self.gain) != "momentum")
+        alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
         if self.share < SHARE_LEAST[0 if alone else 1]:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         return found
