@@ -47,6 +47,10 @@ TRUE: dict[str, Truths] = {
         "stiffness": lambda m: m["spring"],
         "hardening": lambda m: m["spring_hardening"] / 0.3**2,
     },
+    "spring_load:progressive": {
+        "stiffness": lambda m: m["spring"],
+        "progression": lambda m: m["spring_hardening"] / 0.3,
+    },
     "load_compliance": {
         "load_share": lambda m: m["load_share"],
         "frequency": _load_frequency,

@@ -88,17 +88,22 @@ class Trial:
         worst = min(change, key=lambda name: change[name])
         if change[worst] < -SPOILED * max(most, GAIN_LEAST):
             found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")
-        if self.rest < REST_LEAST and self.share < NEARLY:
-            found.append(f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
         if self.share < SHARE_LEAST[0 if alone else 1]:
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         return found
 
+    def _shape_objections(self) -> list[str]:
+        """That it only mends the shape of what was added before, where the data say anything of it."""
+        says = not self.absorbed or max(self.gain.values(), default=0.0) >= GAIN_LEAST
+        if says and self.rest < REST_LEAST and self.share < NEARLY:
+            return [f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect"]
+        return []
+
     @property
     def objections(self) -> tuple[str, ...]:
         """Why it may not be added; empty when it may."""
-        h, found = self.hypothesis, [] if self.absorbed else self._data_objections()
+        h, found = self.hypothesis, self._shape_objections() + ([] if self.absorbed else self._data_objections())
         if self.size < MATERIAL:
             found.append(f"its size is {self.size:.2g} of the usual one")
         if self.slowness > SLOW:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.discover.coordinates import coordinates
-from pneumo_ros.discover.court import magnitude, size_in, stable, undetermined
+from pneumo_ros.discover.court import magnitude, remaining, size_in, stable, undetermined
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.discover.steps import Step, without
@@ -106,3 +106,30 @@ def test_a_round_whose_effect_vanished_says_so() -> None:
     changed = without(step, ["constant_load"], "it is gone")
     assert changed.added is None
     assert changed.trials[0].objections == ("it is gone",)
+
+
+@pytest.mark.parametrize(
+    ("gain", "rest", "objects"),
+    [
+        (0.46, 0.004, True),  # the data say something of it, and it is the rest of another's shape
+        (0.01, 0.004, False),  # they say nothing: base parameters stand in for it
+        (0.46, 0.3, False),
+    ],
+)
+def test_what_base_parameters_stand_in_for_is_no_shape_of_another_effect(
+    gain: float, rest: float, objects: bool
+) -> None:
+    h = Hypothesis("constant_load", LOAD, np.ones(1), np.empty(0), np.empty(0), t=10.0, relief=6.0)
+    trial = Trial(h, np.empty(0), {"chamber_a": gain}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0, rest=rest)
+    assert trial.absorbed
+    assert any("a shape, no effect" in words for words in trial.objections) is objects
+
+
+def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
+    """A thousandth of a large rest in another equation is chance."""
+    trial = Trial(
+        Hypothesis("line_delay", (), np.empty(0), np.empty(0), np.empty(0)), np.empty(0),
+        {"momentum": 0.001, "chamber_a": 0.5}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0,
+    )  # fmt: skip
+    first, now = {"momentum": 2e5, "chamber_a": 1000.0}, {"momentum": 1e5, "chamber_a": 4.0}
+    assert remaining(trial, first, now) == pytest.approx(0.004)

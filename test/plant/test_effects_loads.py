@@ -34,6 +34,12 @@ def test_a_hardening_spring_is_duffings() -> None:
     assert forces == pytest.approx([-0.6 * STIFFNESS * 1.72, 0.0, 0.7 * STIFFNESS * 1.98], rel=1e-9, abs=1e-9)
 
 
+def test_a_progressive_spring_grows_stiffer_by_the_metre_both_ways() -> None:
+    given = {"stiffness": STIFFNESS, "rest_position": OFFSET, "progression": 2.0}
+    forces = [seen("spring_load", "force", given, y=y) - 11.0 for y in (-0.4, OFFSET, 0.9)]
+    assert forces == pytest.approx([-0.6 * STIFFNESS * 2.2, 0.0, 0.7 * STIFFNESS * 2.4], rel=1e-9, abs=1e-9)
+
+
 @pytest.mark.parametrize(("hardening", "stiffer"), [(100.0, 10.0), (-100.0, 0.5)])
 def test_no_spring_changes_more_than_tenfold(hardening: float, stiffer: float) -> None:
     given = {"stiffness": STIFFNESS, "rest_position": OFFSET, "hardening": hardening}

@@ -82,7 +82,7 @@ LOADS = {
     "spring_load": Effect("N/m", 40.0, 150.0, _MOMENTUM, _spring),
     "spring_load:hardening": Effect("N/m", 40.0, 100.0, _MOMENTUM, fixed("spring", spring_hardening=0.3)),
     "spring_load:progressive": Effect(
-        "N/m", 40.0, 100.0, _MOMENTUM, fixed("spring", spring_hardening=0.5, spring_power=1.0), same_shape=False
+        "N/m", 40.0, 100.0, _MOMENTUM, fixed("spring", spring_hardening=0.5, spring_power=1.0)
     ),
     "load_compliance": Effect("Hz", 5.0, 25.0, _MOMENTUM, _coupled, weaken=inverse),
     "backlash": Effect("m", 5e-5, 5e-4, ("sensor", "momentum"), field("encoder_play")),
