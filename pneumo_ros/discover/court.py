@@ -17,7 +17,7 @@ from pneumo_ros.discover.hypothesis import (
     wald,
     weights,
 )
-from pneumo_ros.discover.measures import acting, advantage, explained, force, gains, usual_gains
+from pneumo_ros.discover.measures import acting, advantage, equation_of, explained, force, gains, usual_gains
 from pneumo_ros.discover.trial import GAIN_LEAST, T_LEAST, Trial
 from pneumo_ros.plant import Model
 
@@ -62,6 +62,7 @@ def put_on_trial(
                 score=h.likelihood + log_likelihood(held.evidence, r) - reference,
                 force=force(held.evidence, held.residual, r) / (TEXTURE * held.evidence.drive),
                 lag=_lag(h, base.evidence.runs[0].sample_time),
+                elsewhere=_elsewhere(base.evidence, h),
             )
         )
     return sorted(found, key=lambda trial: -trial.score)
@@ -172,6 +173,13 @@ def remaining(trial: Trial, first: dict[str, float], now: dict[str, float]) -> f
     helped = [n for n, gain in trial.gain.items() if gain >= GAIN_LEAST] or list(trial.gain)
     name = max(helped, key=lambda n: trial.gain[n] * now.get(n, 0.0))
     return now.get(name, 0.0) / first[name] if first.get(name) else 1.0
+
+
+def _elsewhere(evidence: Evidence, h: Hypothesis) -> frozenset[str]:
+    """Equations of which no residual depends on the candidate."""
+    touched = np.any(h.slopes != 0.0, axis=1)
+    entered = {equation_of(name) for k, name in enumerate(evidence.names) if touched[evidence.family == k].any()}
+    return frozenset(map(equation_of, evidence.names)) - entered
 
 
 def _lag(h: Hypothesis, sample_time: float) -> float:

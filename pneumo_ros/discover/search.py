@@ -22,6 +22,7 @@ from pneumo_ros.discover.slip_trials import longer
 from pneumo_ros.discover.slips import polished, slips, with_values_of
 from pneumo_ros.discover.steps import Found, Step, without
 from pneumo_ros.discover.strain import followed
+from pneumo_ros.discover.timing import lateness, later
 from pneumo_ros.discover.trial import MATERIAL, Trial
 from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
@@ -54,6 +55,8 @@ class Search:
         self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
     ) -> None:
         self.progress = progress or (lambda share, text: None)
+        self.late = lateness(model, train, held)  # s
+        train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         # what is asked of a model again is kept
@@ -111,24 +114,30 @@ class Search:
         return new, gone
 
     def polish(self, model: Model) -> Model:
-        """Friction refitted to breakaways and reversals, which decide about predictions through them."""
+        """Friction refitted to breakaways and reversals, which decide about predictions through them.
+
+        Of an axis driven by a force only where predictions get no worse: no pressures hold it back as it slides.
+        """
         made = self.slips(model)
         if made is None:
             return model
-        return with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
+        new = with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
+        worse = model.force_driven and not _no_worse(new, model, self.train.runs)
+        return model if worse else new
 
     def settled(self, model: Model) -> Model:
         """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.
 
-        That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back.
+        That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back; and
+        only where held-out runs are predicted no worse, either.
         """
         if not model.force_driven and self.slips(model) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
         sure = self.fitter.deviations(model)  # what equations along the motion say: segments alone bend it
         new = polish(self.fitter, model, self.train.runs, sure=sure).model
-        before, after = windowed(model, self.train.runs), windowed(new, self.train.runs)
-        return new if all(after[name] <= before[name] for name in before) else model
+        better = all(_no_worse(new, model, evidence.runs) for evidence in (self.train, self.held))
+        return new if better else model
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
@@ -196,6 +205,12 @@ def convinces(trial: Trial, before: Mapping[str, float], after: Mapping[str, flo
     predictions may not get worse either.
     """
     return trial.clear or pays(before, after) or (trial.absorbed and harmless(before, after))
+
+
+def _no_worse(new: Model, old: Model, runs: Sequence[Run]) -> bool:
+    """Whether no signal of the runs is predicted worse."""
+    before, after = windowed(old, runs), windowed(new, runs)
+    return all(after[name] <= before[name] for name in before)
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

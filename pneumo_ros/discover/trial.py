@@ -48,6 +48,7 @@ class Trial:
     quiet: bool = True  # whether no force of size is unexplained: else base parameters may be strained by that
     refused: str = ""  # why it was taken back after it had been added
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
+    elsewhere: frozenset[str] = frozenset()  # equations that it does not enter
 
     @property
     def name(self) -> str:
@@ -84,7 +85,9 @@ class Trial:
             found.append(f"removes {100.0 * most:.1f} % on held-out runs")
         elif self.z < Z_LEAST:
             found.append("its gain on held-out runs is within their scatter")
-        change = {name: max(gain, self.usual.get(name, gain)) for name, gain in self.gain.items()}
+        # what explains an equation does no harm where it does not act: parameters that were bent to make up for it do
+        spared = self.elsewhere if self.share >= PLAIN else frozenset()
+        change = {n: max(gain, self.usual.get(n, gain)) for n, gain in self.gain.items() if n not in spared}
         worst = min(change, key=lambda name: change[name])
         if change[worst] < -SPOILED * max(most, GAIN_LEAST):
             found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")

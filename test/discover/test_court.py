@@ -133,3 +133,12 @@ def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
     )  # fmt: skip
     first, now = {"momentum": 2e5, "chamber_a": 1000.0}, {"momentum": 1e5, "chamber_a": 4.0}
     assert remaining(trial, first, now) == pytest.approx(0.004)
+
+
+@pytest.mark.parametrize(("elsewhere", "objects"), [(frozenset({"chamber_a"}), False), (frozenset[str](), True)])
+def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere: frozenset[str], objects: bool) -> None:
+    """Friction that follows the pressures, beside a gain of a pressure sensor that had been bent to make up for it."""
+    h = Hypothesis("pressure_dependent_friction", (), np.empty(0), np.empty(0), np.empty(0), t=200.0)
+    gain = {"momentum": 0.99, "chamber_a": -1.09}
+    trial = Trial(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
+    assert any("worse" in words for words in trial.objections) is objects
