@@ -142,3 +142,19 @@ def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere:
     gain = {"momentum": 0.99, "chamber_a": -1.09}
     trial = Trial(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
     assert any("worse" in words for words in trial.objections) is objects
+
+
+@pytest.mark.parametrize(
+    ("name", "force", "objects"),
+    [
+        ("position_dependent_friction", 0.9, True),
+        ("position_dependent_friction", 1.1, False),
+        ("spring_load", 0.9, False),
+    ],
+)
+def test_a_profile_of_a_texture_is_no_effect(name: str, force: float, objects: bool) -> None:
+    """Of forces below a hundredth of the drive it would have to explain nearly all, for it can follow any."""
+    own = coordinates(MODEL.library.find(name))
+    h = Hypothesis(name, own, np.full(len(own), 0.3), np.empty(0), np.empty(0), t=20.0)
+    trial = Trial(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)
+    assert any("noise does not explain" in words for words in trial.objections) is objects
