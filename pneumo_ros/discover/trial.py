@@ -88,9 +88,9 @@ class Trial:
         # what explains an equation does no harm where it does not act: parameters that were bent to make up for it do
         spared = self.elsewhere if self.share >= PLAIN else frozenset()
         change = {n: max(gain, self.usual.get(n, gain)) for n, gain in self.gain.items() if n not in spared}
-        worst = min(change, key=lambda name: change[name])
-        if change[worst] < -SPOILED * max(most, GAIN_LEAST):
-            found.append(f"makes {worst} {-100.0 * change[worst]:.0f} % worse on held-out runs")
+        loss, worst = min(((change[n], n) for n in change), default=(0.0, ""))
+        if loss < -SPOILED * max(most, GAIN_LEAST):
+            found.append(f"makes {worst} {-100.0 * loss:.0f} % worse on held-out runs")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
         # along a profile of many sizes any texture can be followed
         profile = self.force <= 1.0 and sum(c.is_size for c in h.coordinates) > FEW
