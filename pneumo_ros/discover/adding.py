@@ -65,11 +65,11 @@ def add(
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting what the model has")
     fading = [name for name in effects if coordinates(model.library.find(name))]
-    fitter = Fitter(model, train, train[:1], candidates=fading)
+    fitter = Fitter(model, train, candidates=fading)
     base = larger = fitter.refit(model)
     if len(fading) < len(effects):
         plain = [name for name in effects if name not in fading]
-        fitter = Fitter(model.with_effects([*model.effects, *plain]), train, train[:1], candidates=fading)
+        fitter = Fitter(model.with_effects([*model.effects, *plain]), train, candidates=fading)
         larger = fitter.refit(fitter.start)
     for k, name in enumerate(fading):
         tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")

@@ -1,5 +1,6 @@
 """Coordinates in which candidates are fitted: sizes in typical ones, time constants and frequencies as logarithms."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ _TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many eith
 _FREQUENCY = ("Hz", "rad/s")
 _RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
-FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
+_FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,12 @@ def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
     if all(p.neutral is None for p in effect.parameters.values()):
         return ()
     found = tuple(_coordinate(effect, key) for key in effect.parameters)
-    many = sum(c.is_size for c in found) > FEW
-    return tuple(replace(c, wide=_PROFILE) for c in found) if many else found
+    return tuple(replace(c, wide=_PROFILE) for c in found) if is_profile(found) else found
+
+
+def is_profile(effect: Sequence[Coordinate]) -> bool:
+    """Whether an effect has so many sizes that they are a profile, which can follow anything."""
+    return sum(c.is_size for c in effect) > _FEW
 
 
 def _coordinate(effect: type[Effect], key: str) -> Coordinate:

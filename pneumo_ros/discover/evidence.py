@@ -94,13 +94,13 @@ class Course:
             np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run)))
             for b in self.breakaways
         ]
-        held = [b.index - round(t / run.sample_time) for b, t in zip(self.breakaways, last.slip_times, strict=True)]
+        ends = [b.index - round(t / run.sample_time) for b, t in zip(self.breakaways, last.slip_times, strict=True)]
         self.inner = [
             slice(max(b.index - width, 0) - span[0], end - span[0] + 1)
-            for b, end, span in zip(self.breakaways, held, self.spans, strict=True)
+            for b, end, span in zip(self.breakaways, ends, self.spans, strict=True)
         ]
         back = max(round(0.02 / run.sample_time), 1)
-        rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, held, strict=True)]
+        rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, ends, strict=True)]
         self.rested = np.array(rested, dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.course import Frame, follow
-from pneumo_ros.discover.slip_time import force_spread, slip_time
+from pneumo_ros.discover.slip_time import force_spread, slip_times
 from pneumo_ros.identify.breakaway import Breakaway, find_breakaways
 from pneumo_ros.identify.bump import Bump
 from pneumo_ros.identify.equations import Chamber, Momentum, measured_throughout
@@ -59,7 +59,7 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
             noise = equation.noise(bump, run, states, rate, steep)
             found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
     breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
-    late = tuple(slip_time(model, b) for b in breakaways)
+    late = slip_times(model, breakaways)
     spread = np.array([force_spread(b, seconds) for b, seconds in zip(breakaways, late, strict=True)])
     time = np.array([b.time for b in breakaways])
     found.append(Family("breakaway", 0.0, index, time, spread, np.ones(len(time), dtype=bool), None, breakaways, late))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.discover.basefit import ITERATIONS, Known, base_fit, fit_base, strain
-from pneumo_ros.discover.coordinates import FEW, Coordinate, coordinates, kinds
+from pneumo_ros.discover.coordinates import Coordinate, coordinates, is_profile, kinds
 from pneumo_ros.discover.evidence import Evidence
 from pneumo_ros.discover.freedom import conditions, freed, relative
 from pneumo_ros.discover.hypothesis import (
@@ -36,14 +36,19 @@ class Fitter:
     """The evidence of training and held-out runs, and fits of `start` and of what grows from it."""
 
     def __init__(
-        self, start: Model, train: Sequence[Run], held: Sequence[Run], candidates: Sequence[str] | None = None
+        self, start: Model, train: Sequence[Run], held: Sequence[Run] = (), candidates: Sequence[str] | None = None
     ) -> None:
         """`candidates`: names of all that may be added; by default whatever the model lacks."""
-        self.start = start
+        self.start, self._held_runs = start, held
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
-        self.train, self.held = Evidence(start, train), Evidence(start, held)
+        self.train = Evidence(start, train)
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
+
+    @cached_property
+    def held(self) -> Evidence:
+        """The evidence of the held-out runs, which only those need who judge by it."""
+        return Evidence(self.start, self._held_runs)
 
     def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
         """Of the free parameters of `model` but those `fixed`: the start's to a few per cent, added ones hardly."""
@@ -76,11 +81,10 @@ class Fitter:
         over wide ranges, and a fit of both may end in a valley far from the true one.
         """
         own = coordinates(model.library.find(name))
-        sizes = [c for c in own if c.is_size]
-        if len(kinds(own)) == 1 or len(sizes) > FEW:
+        if len(kinds(own)) == 1 or is_profile(own):
             return model
         best, least = model, self._likelihood(model) - AS_MUCH
-        for size in sizes:
+        for size in (c for c in own if c.is_size):
             if model[size.name] != size.neutral:
                 simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
                 if (found := self._likelihood(simpler)) > least:

@@ -11,7 +11,7 @@ from pneumo_ros.discover.hypothesis import FLOOR, OVERLAP, family_scales, huber,
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-MOST_BLOCK = 3.0  # log likelihood that one block of time may say: it takes several to decide
+MOST_BLOCK = 3.0  # log likelihood that one block of time, or event, may say: it takes several to decide
 ACTS, FEWEST = 0.25, 30  # noise deviations that an effect changes a residual by where it acts, and windows that ask for
 FEW = {"breakaway": 8}  # where it is not that: windows overlap, breakaways do not
 WILD = 3.0  # usual sizes: beyond, a residual says no more against an effect
@@ -96,9 +96,14 @@ def _surprise(evidence: Evidence, residual: Array) -> Array:
 def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
     """Log likelihood that `better` gains on `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
     difference = OVERLAP**2 * (_surprise(evidence, worse) - _surprise(evidence, better))
-    blocks = np.clip(np.bincount(evidence.block, difference), -MOST_BLOCK, MOST_BLOCK)
-    spread = float(np.sqrt(np.sum(blocks**2)))
-    return float(blocks.sum()), float(blocks.sum() / spread) if spread > 0.0 else 0.0
+    return together(np.asarray(np.bincount(evidence.block, difference), dtype=np.float64))
+
+
+def together(saved: Array) -> tuple[float, float]:
+    """Log likelihoods that parts of the data save, none of which decides: their sum, and that over its scatter."""
+    parts = np.clip(saved, -MOST_BLOCK, MOST_BLOCK)
+    spread = float(np.sqrt(np.sum(parts**2)))
+    return float(parts.sum()), float(parts.sum() / spread) if spread > 0.0 else 0.0
 
 
 def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:

@@ -40,6 +40,11 @@ def harmless(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     return all(after[n] <= WORSE * before[n] for n in before)
 
 
+def no_worse(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of no signal got worse at all."""
+    return all(after[n] <= before[n] for n in before)
+
+
 def typical_error(errors: Mapping[str, float]) -> float:
     """Root mean square over signals of what `windowed` returns: 1 where only noise is left."""
     return float(np.sqrt(np.mean(np.square(list(errors.values())))))

@@ -14,7 +14,7 @@ from pneumo_ros.discover.fitter import Fitter
 from pneumo_ros.discover.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.discover.measures import excess, force
 from pneumo_ros.discover.polishing import polish
-from pneumo_ros.discover.prediction import harmless, pays, windowed
+from pneumo_ros.discover.prediction import harmless, no_worse, pays, windowed
 from pneumo_ros.discover.refining import held_out, refine
 from pneumo_ros.discover.rivals import rivals, simplest
 from pneumo_ros.discover.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
@@ -55,7 +55,7 @@ class Search:
         self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
     ) -> None:
         self.progress = progress or (lambda share, text: None)
-        self.late = lateness(model, train, held)  # s
+        self.late = lateness(model, train)  # s
         train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
@@ -122,8 +122,7 @@ class Search:
         if made is None:
             return model
         new = with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
-        worse = model.force_driven and not _no_worse(new, model, self.train.runs)
-        return model if worse else new
+        return new if not model.force_driven or self._predicts_training(new, model) else model
 
     def settled(self, model: Model) -> Model:
         """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.
@@ -136,8 +135,12 @@ class Search:
         self.progress(0.9, "refitting by prediction")
         sure = self.fitter.deviations(model)  # what equations along the motion say: segments alone bend it
         new = polish(self.fitter, model, self.train.runs, sure=sure).model
-        better = all(_no_worse(new, model, evidence.runs) for evidence in (self.train, self.held))
+        better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
         return new if better else model
+
+    def _predicts_training(self, new: Model, old: Model) -> bool:
+        """Whether one model predicts no signal of the training runs worse than another."""
+        return no_worse(windowed(old, self.train.runs), windowed(new, self.train.runs))
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
@@ -205,12 +208,6 @@ def convinces(trial: Trial, before: Mapping[str, float], after: Mapping[str, flo
     predictions may not get worse either.
     """
     return trial.clear or pays(before, after) or (trial.absorbed and harmless(before, after))
-
-
-def _no_worse(new: Model, old: Model, runs: Sequence[Run]) -> bool:
-    """Whether no signal of the runs is predicted worse."""
-    before, after = windowed(old, runs), windowed(new, runs)
-    return all(after[name] <= before[name] for name in before)
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,9 @@ from numpy.typing import NDArray
 from pneumo_ros.discover.coordinates import Coordinate, coordinates
 from pneumo_ros.discover.court import magnitude
 from pneumo_ros.discover.hypothesis import Hypothesis, missing
-from pneumo_ros.discover.measures import MOST_BLOCK
+from pneumo_ros.discover.measures import together
 from pneumo_ros.discover.mechanics import moves
-from pneumo_ros.discover.slip_starts import Start
+from pneumo_ros.discover.slip_starts import Tangents, by_sizes
 from pneumo_ros.discover.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
@@ -26,7 +27,7 @@ BLIND = 30.0  # t that the usual size of an effect would reach on the equations:
 SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 TRIED = 3  # candidates that are fitted, of all that begin well
 ENOUGH = 0.9  # share of the error beyond the noise's
-SHARES = (0.5, 0.75)  # of the events, how far the best of which are off is looked at: half, else three in four
+QUANTILES = (0.5, 0.75)  # of the events' errors: the first that is poor is looked at
 
 
 @dataclass(frozen=True)
@@ -48,14 +49,15 @@ def longer(
     `made`: its mechanics and the events; `known`: standard deviations of its parameters; `first`: nothing was added.
     """
     alone, found = made
-    train, held = errors(alone, found.train(alone)), errors(alone, found.held(alone))
-    poor = [q for q in SHARES if max(np.quantile(train, q), np.quantile(held, q)) >= POOR]
+    segments = found.train(alone)
+    train, held = errors(alone, segments), errors(alone, found.held(alone))
+    poor = [q for q in QUANTILES if max(np.quantile(train, q), np.quantile(held, q)) >= POOR]
     if not poor:
         return model, None
     q = poor[0]
     tried = try_candidates(alone, found, blind(screened, alone), known, held, q)
-    samples = found.train(alone).samples
-    trials = [as_trial(c, coordinates(alone.library.find(c.name)), train, held, q, samples, first) for c in tried]
+    effects = [coordinates(alone.library.find(c.name)) for c in tried]
+    trials = [as_trial(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)]
     good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
     usual = float(np.quantile(held, q))
     step = Step(model, tuple(trials), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
@@ -72,9 +74,10 @@ def try_candidates(
 
     `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
     """
-    start = Start.of(alone, found, friction_priors(alone, known))
+    most_are_poor = q == QUANTILES[0]
+    begins = partial(by_sizes, alone, found) if most_are_poor else Tangents.of(alone, found, known).best
     with ThreadPoolExecutor(2) as pool:
-        begin = list(pool.map(start.promise if q > SHARES[0] else start.sizes, names))
+        begin = list(pool.map(begins, names))
     result = []
     for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
         refit = _fit(alone, found, model, name, known)
@@ -113,13 +116,8 @@ def share_removed(before: Array, after: Array, q: float) -> float:
 
 
 def deviations_better(before: Array, after: Array, samples: int) -> float:
-    """By how many deviations events of that many samples got better: their log likelihoods, none of which decides.
-
-    Vuong's (1989), as of blocks of time: events that an effect does not touch say nothing.
-    """
-    saved = np.clip(0.5 * samples * (before - after), -MOST_BLOCK, MOST_BLOCK)
-    spread = float(np.sqrt(np.sum(saved**2)))
-    return float(np.sum(saved)) / spread if spread > 0.0 else 0.0
+    """By how many deviations events of that many samples got better; what an effect does not touch says nothing."""
+    return together(0.5 * samples * (before - after))[1]
 
 
 def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:

@@ -18,14 +18,14 @@ EFFECT = "position_sensor_delay"
 SURE = 5.0  # deviations from none
 
 
-def lateness(model: Model, train: Sequence[Run], held: Sequence[Run]) -> float:
+def lateness(model: Model, train: Sequence[Run]) -> float:
     """How much later than the force positions are recorded [s], within a sample; 0 where none is seen.
 
     Of axes driven by a force: a valve's command is held from when it was sent.
     """
     if not model.force_driven or EFFECT in model.effects:
         return 0.0
-    fitter = Fitter(model, train, held, [EFFECT])
+    fitter = Fitter(model, train, candidates=[EFFECT])
     begin = model.with_effects([*model.effects, EFFECT], {f"{EFFECT}.delay": 0.5 * train[0].sample_time})
     found = fit_base(fitter.train, begin, fitter.known(begin))
     late, std = found[f"{EFFECT}.delay"], fitter.deviations(found)[f"{EFFECT}.delay"]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.coordinates import FEW, Coordinate
+from pneumo_ros.discover.coordinates import Coordinate, is_profile
 from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.measures import equation_helped
 
@@ -93,8 +93,8 @@ class Trial:
             found.append(f"makes {worst} {-100.0 * loss:.0f} % worse on held-out runs")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
         # along a profile of many sizes any texture can be followed
-        profile = self.force <= 1.0 and sum(c.is_size for c in h.coordinates) > FEW
-        if self.share < (PLAIN if profile else SHARE_LEAST[0 if alone else 1]):
+        texture = self.force <= 1.0 and is_profile(h.coordinates)
+        if self.share < (PLAIN if texture else SHARE_LEAST[0 if alone else 1]):
             found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
         return found
 

@@ -77,7 +77,7 @@ def refit_segments(
     progress: Progress | None = None,
 ) -> Refit:
     """Refit `free` parameters to the given segments; otherwise as `refit`."""
-    unknowns = _unknowns(model, tuple(free), priors, start)
+    unknowns = unknowns_of(model, tuple(free), priors, start)
     if not len(segments):
         raise DataError("no segment without a gap in any of the recordings; give a shorter --segment")
     count = max(round(share * len(segments)), 1)
@@ -106,7 +106,10 @@ def default_prior(model: Model, name: str) -> float:
     return PRIOR * max(abs(value), abs(specification.default))
 
 
-def _unknowns(model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None) -> Unknowns:
+def unknowns_of(
+    model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None
+) -> Unknowns:
+    """What a refit of the named parameters fits; otherwise as `refit`. UsageError for none, or priors of zero."""
     known = start.estimates if start else {}
     prior = [priors.get(n, known[n].prior if n in known else default_prior(model, n)) for n in names]
     if not names or not all(p > 0.0 for p in prior):

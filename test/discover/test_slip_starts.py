@@ -7,7 +7,7 @@ import pytest
 from identify.constant import constant_run, truth
 
 from pneumo_ros.discover.mechanics import driven_by_pressures, event_rows, mechanical
-from pneumo_ros.discover.slip_starts import Start
+from pneumo_ros.discover.slip_starts import Tangents, by_sizes
 from pneumo_ros.discover.slips import Slips, friction_priors
 from pneumo_ros.plant import Model
 
@@ -23,32 +23,32 @@ def alone() -> Model:
 
 
 @lru_cache(maxsize=1)
-def start() -> Start:
+def slips() -> Slips:
     """Of a model that lacks the exponent of the machine that is recorded."""
     machine = truth().with_effects([*truth().effects, "stribeck_shape"], HIDDEN)
     runs = tuple(driven_by_pressures(truth(), constant_run(v, 3.0, model=machine)) for v in VOLTAGES)
     rows = event_rows(alone(), runs)
-    known = {name: 1e-3 * alone()[name] for name in friction_priors(alone(), {})}
-    return Start.of(alone(), Slips(runs, runs, rows, rows), friction_priors(alone(), known))
+    return Slips(runs, runs, rows, rows)
 
 
 def test_along_its_tangent_what_is_missing_promises_most() -> None:
-    loss, model = start().promise("stribeck_shape")
+    tangents = Tangents.of(alone(), slips(), {name: 1e-3 * alone()[name] for name in friction_priors(alone(), {})})
+    loss, model = tangents.best("stribeck_shape")
     assert model["stribeck_shape.exponent"] < 2.0
     assert model["stribeck_shape.rational"] == 0.0
     assert model["stribeck_shape.exponent"] == pytest.approx(HIDDEN["stribeck_shape.exponent"], abs=0.05)
-    assert all(loss < start().promise(name)[0] for name in RIVALS)
+    assert all(loss < tangents.best(name)[0] for name in RIVALS)
 
 
 def test_sizes_of_different_kinds_are_tried_one_at_a_time() -> None:
     """A longer tail stands in for a smaller exponent: both at once are neither."""
-    error, model = start().sizes("stribeck_shape")
+    error, model = by_sizes(alone(), slips(), "stribeck_shape")
     assert np.isfinite(error)
     assert (model["stribeck_shape.exponent"] == 2.0) != (model["stribeck_shape.rational"] == 0.0)
 
 
 def test_shapes_are_tried_around_the_best_size() -> None:
-    _, model = start().sizes("dwell_time_breakaway")
+    _, model = by_sizes(alone(), slips(), "dwell_time_breakaway")
     assert any(model["dwell_time_breakaway.rise"] == pytest.approx(size) for size in (6.0, 20.0, 50.0))
     shaped = [model[f"dwell_time_breakaway.{key}"] for key in ("time_constant", "distance")]
     usual = [model.specification(f"dwell_time_breakaway.{key}").default for key in ("time_constant", "distance")]
