@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.console import columns
 from pneumo_ros.command.diagnosed import added, by_signal, listed, moved
 from pneumo_ros.command.diagnosis_json import equations_dict, value_dict
-from pneumo_ros.diagnose.wording import EQUATIONS, times
+from pneumo_ros.diagnose.wording import EQUATIONS, put_off, times
 
 if TYPE_CHECKING:
     from pneumo_ros.discover.adding import Adding
@@ -43,6 +43,7 @@ def adding_dict(found: "Adding") -> dict[str, Any]:
         },
         "equations": {"before": equations_dict(found.before), "after": equations_dict(found.after)},
         "refit": estimates_dict(found.model, _base(found), found.train),
+        "input_delay_s": found.late,
     }  # fmt: skip
 
 
@@ -66,7 +67,7 @@ def undetermined(result: Mapping[str, Any]) -> list[str]:
 def text(result: Mapping[str, Any]) -> str:
     """The whole answer; `result` is the verb's JSON."""
     tables = _table(result), by_signal(result["errors"], HEADS), equations(result), moved(result["refit"])
-    parts = (headline(result), *tables, _lacking(result))
+    parts = (headline(result), put_off(result["input_delay_s"]), *tables, _lacking(result))
     return "\n\n".join(part for part in parts if part)
 
 

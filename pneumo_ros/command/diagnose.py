@@ -97,9 +97,6 @@ def diagnosed(
             console.note(f"Interrupted: {again}")
 
         search = Search(model, train, held, lambda share, doing: progress(0.8 * share, doing))
-        if search.late:
-            progress.clear()
-            console.note(f"positions come {1e3 * search.late:.2g} ms after the force; it is taken so much later")
         found = search.run()
         if found.interrupted:
             interrupted()

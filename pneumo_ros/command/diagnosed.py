@@ -4,7 +4,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pneumo_ros.command.console import columns
-from pneumo_ros.diagnose.wording import EQUATIONS, SIGNALS, VARIABLES, amount, machine_changed, number, percent, times
+from pneumo_ros.diagnose.wording import (
+    EQUATIONS,
+    SIGNALS,
+    VARIABLES,
+    amount,
+    machine_changed,
+    number,
+    percent,
+    put_off,
+    times,
+)
 
 SHOWN = 4  # refused candidates
 REASONS = 2  # of each
@@ -15,8 +25,8 @@ ENOUGH = 1.3  # noise floors: what predictions from estimated starts leave when 
 def text(result: Mapping[str, Any]) -> str:
     """The whole answer; `result` is the verb's JSON."""
     parts = (
-        headline(result), failing(result), added(result["added"]), waterfall(result), refused(result),
-        remaining(result), moved(result["refit"]), result["suggested_experiment"],
+        headline(result), put_off(result["input_delay_s"]), failing(result), added(result["added"]), waterfall(result),
+        refused(result), remaining(result), moved(result["refit"]), result["suggested_experiment"],
     )  # fmt: skip
     return "\n\n".join(part for part in parts if part)
 

@@ -42,6 +42,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "train": list(outcome.train),
         "held_out": list(outcome.held),
         "rounds": len(outcome.steps),
+        "input_delay_s": outcome.late,
     }
 
 

@@ -55,6 +55,11 @@ def amount(value: float | None, target: str) -> str:
     return "-" if value is None else f"{number(factor * value)} {unit}"
 
 
+def put_off(late: float) -> str:
+    """By how much a measured force was put off [s], if it was."""
+    return f"Positions come {number(1e3 * late, 2)} ms after the force; it was taken so much later." if late else ""
+
+
 def times(ratio: float | None) -> str:
     """A ratio to the noise: '14 x', '1.2 x'."""
     if ratio is None or not math.isfinite(ratio):

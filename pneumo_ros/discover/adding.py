@@ -16,6 +16,7 @@ from pneumo_ros.discover.hypothesis import Hypothesis
 from pneumo_ros.discover.polishing import Progress, polish
 from pneumo_ros.discover.prediction import HORIZON, typical_error, windowed
 from pneumo_ros.discover.refining import refine
+from pneumo_ros.discover.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
 from pneumo_ros.identify.refit import Estimate, default_free
 from pneumo_ros.identify.run import Run
@@ -38,6 +39,7 @@ class Adding:
     errors: tuple[float, float, float]  # typical error over the noise floor: as given, refitted, with the effects
     train: tuple[str, ...] = ()
     judged: tuple[str, ...] = ()
+    late: float = 0.0  # s, by which a measured force was put off, as positions come after it
 
     @property
     def held_out(self) -> bool:
@@ -64,6 +66,8 @@ def add(
         raise UsageError("effects are fitted to recordings; give at least one")
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting what the model has")
+    late = lateness(model, train) if EFFECT not in effects else 0.0
+    train, held = ([later(run, late) for run in runs] for runs in (train, held))
     fading = [name for name in effects if coordinates(model.library.find(name))]
     fitter = Fitter(model, train, candidates=fading)
     base = larger = fitter.refit(model)
@@ -83,7 +87,7 @@ def add(
         errors.append(typical_error(windowed(one, judged)))
     return Adding(
         tuple(effects), base, found.model, found.estimates, compared[1], compared[2], compared[0],
-        (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged),
+        (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged), late,
     )  # fmt: skip
 
 

@@ -89,3 +89,4 @@ class Outcome:
     interrupted: bool = False
     train: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
+    late: float = 0.0  # s, by which a measured force was put off, as positions come after it

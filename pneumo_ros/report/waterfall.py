@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import SIGNALS, amount, times
+from pneumo_ros.diagnose.wording import SIGNALS, amount, put_off, times
 from pneumo_ros.report.bars import Rows, bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.markup import Content, Html, table, tag
@@ -25,8 +25,8 @@ def waterfall_section(outcome: "Outcome") -> Section:
     text = (
         f"Each held-out recording is predicted over windows of {horizon:g} s that start from an estimated state. Shown "
         "is the error of a typical window (the geometric mean, and the root mean square over the signals), in sensor "
-        "noise. None of these recordings was fitted. 1 x is the noise floor."
-    )
+        f"noise. None of these recordings was fitted. 1 x is the noise floor. {put_off(outcome.late)}"
+    ).rstrip()
     signals = Section("held-out-signals", "Signal by signal", _signals(outcome))
     body = tag("p", text, class_="soft")
     return Section("held-out", "Held-out error", body, charts=(waterfall_chart(outcome.course),), parts=(signals,))

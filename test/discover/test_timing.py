@@ -6,6 +6,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from pneumo_ros.command.added import adding_dict, text
+from pneumo_ros.discover.adding import add
 from pneumo_ros.discover.timing import lateness, later
 from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import load_model
@@ -48,3 +50,18 @@ def test_the_input_is_put_off_and_nothing_else_changes() -> None:
     np.testing.assert_array_equal(put_off.input[:3], given.input[0])
     assert all(getattr(put_off, f.name) is getattr(given, f.name) for f in fields(Run) if f.name != "input")
     assert later(given, 0.0) is given
+
+
+def test_an_effect_added_by_name_is_timed_too_and_says_so() -> None:
+    """Half a millisecond late costs newtons where the axis jerks; the law of friction would have to make up for it."""
+    found = add(AXIS, ["asymmetric_viscous_friction"], [run(0.8e-3)])
+    result = adding_dict(found)
+    assert result["input_delay_s"] == found.late == pytest.approx(0.8e-3, abs=1e-4)
+    assert "Positions come 0.8 ms after the force" in text(result)
+    assert found.after.equations["momentum"].explained_by_noise
+
+
+def test_a_delay_that_is_to_be_added_is_left_to_the_effect() -> None:
+    found = add(AXIS, ["position_sensor_delay"], [run(0.8e-3)])
+    assert found.late == 0.0
+    assert found.estimates["position_sensor_delay.delay"].value == pytest.approx(0.8e-3, abs=1e-4)
