@@ -81,4 +81,4 @@ def event_rows(model: Model, runs: Sequence[Run], most: int = MOST) -> NDArray[n
 
 def events(model: Model, runs: Sequence[Run], rows: NDArray[np.int64]) -> Segments:
     """Those segments, with first guesses by `model`."""
-    return cut(model, runs, LENGTH).pick(rows)
+    return cut(model, runs, LENGTH, rows)

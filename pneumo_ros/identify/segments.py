@@ -25,8 +25,8 @@ _WRONG = 1e9  # noise deviations: the most an error counts, so that its square s
 class Segments:
     """Segments of equal length; arrays hold one row per segment.
 
-    first: index of each segment's first entry in `voltage`, the inputs of all runs one after another; start [s]: when
-    voltage[0] would be by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
+    first: index of each segment's first entry in `voltage`, the inputs during all segments; start [s]: when voltage[0]
+    would be by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
     1 / noise, or 0 where nothing was measured; guess and scale (segments, states): initial states and their prior
     deviations; shown (segments, signals): what sensors read at the guess, so as the model then was; columns: the states
     that the signals show.
@@ -155,10 +155,18 @@ class Segments:
         return len(states) // len(self) if len(self) else 1
 
 
-def cut(model: Model, runs: Sequence[Run], duration: float) -> Segments:
-    """Cut runs into segments of `duration` [s], side by side and without gaps; UsageError when sample times differ."""
+def cut(model: Model, runs: Sequence[Run], duration: float, rows: Index | None = None) -> Segments:
+    """Cut runs into segments of `duration` [s], side by side and without gaps; UsageError when sample times differ.
+
+    `rows`, ascending: only those of the segments.
+    """
     samples = max(round(duration / runs[0].sample_time), 2) if runs else 2
-    return cut_at(model, runs, [side_by_side(run, samples) for run in runs], samples)
+    starts = [side_by_side(run, samples) for run in runs]
+    if rows is not None:
+        ends = np.cumsum([len(own) for own in starts])
+        chosen = np.split(rows, np.searchsorted(rows, ends[:-1]))
+        starts = [own[some - end] for own, some, end in zip(starts, chosen, ends, strict=True)]
+    return cut_at(model, runs, starts, samples)
 
 
 def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: int) -> Segments:
@@ -171,7 +179,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
                 "lay them on one grid"
             )
     names = measured_columns(model)
-    offsets = np.cumsum([0, *(len(run.input) for run in runs)])
+    voltage, first = _inputs(runs, starts, samples)
     measured, weight = [], []
     for run, begin in zip(runs, starts, strict=True):
         rows = begin[:, None] + np.arange(1, samples + 1)
@@ -183,9 +191,9 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
     segments = Segments(
         sample_time=dt,
         samples=samples,
-        voltage=np.concatenate([run.input for run in runs]),
-        first=np.concatenate([b * PARTS + o for b, o in zip(starts, offsets[:-1], strict=True)]).astype(np.int64),
-        start=np.repeat(-dt / PARTS * offsets[:-1], counts),
+        voltage=voltage,
+        first=first,
+        start=np.asarray(dt / PARTS * (np.concatenate(starts) * PARTS - first)),
         measured=np.concatenate(measured),
         weight=np.concatenate(weight),
         guess=nothing,
@@ -197,6 +205,20 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
         runs=tuple(runs),
     )
     return segments.guessed(model)
+
+
+def _inputs(runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple[Array, Index]:
+    """What `cut_at` needs of the inputs, and where each segment's begin there: a few breakaways of minutes, often."""
+    inputs, first, count = [], [], 0
+    for run, begin in zip(runs, starts, strict=True):
+        edges = np.zeros(len(run) + 1, dtype=np.int64)
+        np.add.at(edges, begin, 1)
+        np.add.at(edges, begin + samples, -1)
+        needed = np.cumsum(edges)[: len(run) - 1] > 0  # between a grid point and the next
+        inputs.append(run.input.reshape(-1, PARTS)[needed].ravel())
+        first.append((count + np.concatenate([[0], np.cumsum(needed)])[begin]) * PARTS)
+        count += int(needed.sum())
+    return np.concatenate(inputs), np.concatenate(first)
 
 
 def side_by_side(run: Run, samples: int) -> Index:

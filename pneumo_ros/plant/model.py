@@ -227,7 +227,7 @@ class Model:
             )
         last = int(begin.max(initial=0))
         count = _whole(len(held) - last, parts) if samples is None else samples
-        if begin.min(initial=0) < 0 or last + count * parts > len(held):
+        if len(x) and (begin.min() < 0 or last + count * parts > len(held)):
             raise UsageError(f"lanes reach beyond the {len(held)} voltages given")
         stride, h = substeps(sample_time / parts, step)
         t0 = np.asarray(start, dtype=float) + begin * (sample_time / parts)
