@@ -10,9 +10,9 @@ def coefficient(knot: int) -> Parameter:
 
 
 def bump(u: float) -> float:
-    """Cubic B-spline of unit spacing, centred at 0."""
+    """Six times the cubic B-spline of unit spacing, centred at 0."""
     outer, inner = max(2.0 - abs(u), 0.0), max(1.0 - abs(u), 0.0)
-    return (outer * outer * outer - 4.0 * inner * inner * inner) / 6.0
+    return outer * outer * outer - 4.0 * inner * inner * inner
 
 
 class PositionDependentFriction(Effect):
@@ -49,5 +49,5 @@ class PositionDependentFriction(Effect):
             + knot_19 * bump(x - 19.0) + knot_20 * bump(x - 20.0) + knot_21 * bump(x - 21.0) + knot_22 * bump(x - 22.0)
             + knot_23 * bump(x - 23.0) + knot_24 * (bump(x - 24.0) + bump(x - 25.0))
         )  # fmt: skip
-        friction_scale = max(1.0 + profile, 0.0)
+        friction_scale = max(1.0 + profile / 6.0, 0.0)
         return friction_scale
