@@ -59,7 +59,7 @@ def listing(effects: dict[str, "type[Effect]"], model: "Model") -> str:
 
 def explanation(effect: "type[Effect]", model: "Model") -> str:
     """All there is to know of one effect, as text."""
-    from pneumo_ros.plant.catalogue import body, room
+    from pneumo_ros.plant.catalogue import body, helpers, room
 
     parts = [f"{effect.name}  ({room(effect)})", inspect.cleandoc(effect.__doc__ or "")]
     if effect.signature:
@@ -70,6 +70,8 @@ def explanation(effect: "type[Effect]", model: "Model") -> str:
         if name in effect.functions:
             when = " (once after each step)" if name == "advance" else ""
             parts.append(f"{name.capitalize()}{when}:\n{textwrap.indent(body(effect, name), '    ')}")
+    if used := helpers(effect):
+        parts.append("Where:\n" + textwrap.indent("\n".join(used.values()), "    "))
     if effect.states:
         rows = [(f"  {name}", f"[{state.unit}]", state.meaning) for name, state in effect.states.items()]
         parts.append(f"States:\n{columns(rows)}")

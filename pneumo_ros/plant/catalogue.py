@@ -43,6 +43,23 @@ def body(effect: "type[Effect]", name: str) -> str:
     return textwrap.dedent("\n".join(source[first.lineno - 1 :]))
 
 
+def helpers(effect: "type[Effect]") -> dict[str, str]:
+    """What an effect's functions use of their own file, by name and as it is written: constants, then functions."""
+    constants, functions = dict[str, str](), dict[str, str]()
+    readers = [vars(effect)[name] for name in effect.functions]
+    source = inspect.getsource(inspect.getmodule(effect) or effect)
+    assigned = {line.partition(" = ")[0]: line for line in source.splitlines()}
+    for reader in readers:
+        for name in reader.__code__.co_names:
+            value = reader.__globals__.get(name)
+            if isinstance(value, int | float) and name in assigned:
+                constants[name] = assigned[name]
+            elif inspect.isfunction(value) and value.__module__ == effect.__module__ and name not in functions:
+                functions[name] = inspect.getsource(value).rstrip()
+                readers.append(value)
+    return constants | functions
+
+
 def record(effect: "type[Effect]", model: "Model") -> dict[str, Any]:
     """One effect for JSON; a range without end is null there."""
     functions = effect.functions.values()
@@ -54,6 +71,7 @@ def record(effect: "type[Effect]", model: "Model") -> dict[str, Any]:
         "signature": effect.signature,
         "source": effect.source,
         "equations": {name: body(effect, name) for name in effect.functions},
+        "helpers": helpers(effect),
         "reads": sorted({name for function in functions for name in function.reads}),
         "writes": sorted({name for function in functions for name in function.writes}),
         "states": {name: {"unit": state.unit, "meaning": state.meaning} for name, state in effect.states.items()},

@@ -9,7 +9,7 @@ from dash.exceptions import PreventUpdate
 
 from pneumo_ros.diagnose.wording import number
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.catalogue import body, catalogue, room, summary
+from pneumo_ros.plant.catalogue import body, catalogue, helpers, room, summary
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.workbench.desk import Desk
@@ -82,6 +82,7 @@ def _effect(desk: Desk, model: Model, effect: type[Effect]) -> html.Div:
     more = [
         html.P(summary(effect)),
         *(html.Pre(html.Code(body(effect, inner))) for inner in ("equations", "advance") if inner in effect.functions),
+        *(html.Pre(html.Code(one)) for one in helpers(effect).values()),
         _parameters(model, effect),
         html.P(f"Source: {effect.source}", className="soft") if effect.source else None,
     ]
