@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -74,26 +73,26 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def refused(folder: Path) -> dict[str, Done]:
-    """`pneumo compare` of every recording that cannot be used, two at a time."""
-
-    def compare(name: str) -> Done:
-        return pneumo(folder, "compare", name, "--json", f"{name}.json", "--report", f"{name}.html")
-
-    with ThreadPoolExecutor(2) as pool:
-        return dict(zip(UNFIT, pool.map(compare, UNFIT), strict=True))
-
-
 @pytest.mark.parametrize("name", UNFIT)
-def test_what_cannot_be_used_is_named_and_nothing_is_written(name: str, refused: dict[str, Done], folder: Path) -> None:
-    found = refused[name]
-    assert found.returncode == 3, found.stderr
-    assert [words for words in UNFIT[name] if words not in found.stderr] == [], found.stderr
-    assert found.stderr.startswith("pneumo: error: ")
-    assert found.stderr.count("\n") == 1
-    assert found.stdout == ""
+def test_what_cannot_be_used_is_named_and_nothing_is_written(
+    name: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = [str(folder / f"{name}.{kind}") for kind in ("json", "html")]
+    code = main(["compare", str(folder / name), "--json", written[0], "--report", written[1]])
+    said = capsys.readouterr()
+    assert code == 3, said.err
+    assert [words for words in UNFIT[name] if words not in said.err] == [], said.err
+    assert said.err.startswith("pneumo: error: ")
+    assert said.err.count("\n") == 1
+    assert said.out == ""
     assert list(folder.glob(f"{name}.*")) == []
+
+
+def test_a_process_says_the_same_and_ends_with_that_code(folder: Path) -> None:
+    found = pneumo(folder, "compare", "swapped", "--json", "-")
+    assert found.returncode == 3
+    assert found.stdout == ""
+    assert [words for words in UNFIT["swapped"] if words not in found.stderr] == []
 
 
 def compared(folder: Path, name: str) -> dict[str, Any]:
