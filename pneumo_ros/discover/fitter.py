@@ -1,6 +1,6 @@
 """A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -91,9 +91,17 @@ class Fitter:
                     best, least = simpler, found
         return best
 
-    def _likelihood(self, model: Model) -> float:
-        """Log likelihood of the training evidence and of what is known of the parameters."""
-        return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model).offset(model))
+    def against(self, model: Model, name: str, values: Mapping[str, float]) -> float:
+        """Log likelihood that the training evidence loses by an effect of these `values` beside `model`.
+
+        With it and without, all else is at its best.
+        """
+        larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
+        return self._likelihood(self.refit(model)) - self._likelihood(larger, values)
+
+    def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
+        """Log likelihood of the training evidence and of what is known of the parameters but those `fixed`."""
+        return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model, fixed).offset(model))
 
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,7 +151,8 @@ class Search:
         if made is None or not ranked.quiet:
             return model, None
         first = model.effects == self.start.effects
-        return longer(model, made, ranked.screened, self.fitter.deviations(model), first)
+        against = partial(self.fitter.against, model)
+        return longer(model, made, ranked.screened, self.fitter.deviations(model), against, first)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
         """The candidates tried beside a model and the best of them, but for those `refused`, and why."""

@@ -1,6 +1,6 @@
 """Effects tried on breakaways and reversals: begun at several sizes and shapes, fitted, judged by events held out."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -17,7 +17,6 @@ from pneumo_ros.discover.slip_starts import Tangents, by_sizes
 from pneumo_ros.discover.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.discover.steps import Step
 from pneumo_ros.discover.trial import Trial
-from pneumo_ros.identify.estimates import Refit
 from pneumo_ros.identify.refit import refit_segments
 from pneumo_ros.plant import Model
 
@@ -27,6 +26,11 @@ BLIND = 30.0  # t that the usual size of an effect would reach on the equations:
 SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
 TRIED = 3  # candidates that are fitted, of all that begin well
 ENOUGH = 0.9  # share of the error beyond the noise's
+PART = 0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
+RESIZED, BETTER = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
+# log likelihood: starts of a state that an effect has for itself are free in every event, and so follow any slow force
+CONTRADICTED = 10.0
+Against = Callable[[str, Mapping[str, float]], float]  # of an effect's name and values: what the equations lose by it
 QUANTILES = (0.5, 0.75)  # of the events' errors: the first that is poor is looked at
 
 
@@ -39,14 +43,21 @@ class Slipping:
     train: Array
     held: Array
     std: dict[str, float]  # of its parameters
+    against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events ask for it
 
 
 def longer(
-    model: Model, made: tuple[Model, Slips], screened: Sequence[Hypothesis], known: dict[str, float], first: bool
+    model: Model,
+    made: tuple[Model, Slips],
+    screened: Sequence[Hypothesis],
+    known: dict[str, float],
+    against: Against,
+    first: bool,
 ) -> tuple[Model, Step | None]:
     """The model with the effect that its breakaways and reversals ask for, and the trials; None where they are fine.
 
-    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `first`: nothing was added.
+    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: what the equations
+    along the motion say of an effect beside it; `first`: nothing was added.
     """
     alone, found = made
     segments = found.train(alone)
@@ -55,7 +66,7 @@ def longer(
     if not poor:
         return model, None
     q = poor[0]
-    tried = try_candidates(alone, found, blind(screened, alone), known, held, q)
+    tried = Candidates(alone, found, known, against, held, q).tried(blind(screened, alone))
     effects = [coordinates(alone.library.find(c.name)) for c in tried]
     trials = [as_trial(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)]
     good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
@@ -67,32 +78,82 @@ def longer(
     return model, step
 
 
-def try_candidates(
-    alone: Model, found: Slips, names: Sequence[str], known: dict[str, float], held: Array, q: float
-) -> list[Slipping]:
-    """Those of the named effects that look best, fitted to the training events; smallest `q`-quantile of errors first.
+@dataclass(frozen=True)
+class Candidates:
+    """Effects to try beside `alone` on its events, by the `q`-quantile of errors; `held`: of the held-out ones now.
 
-    `held`: errors of the held-out events without any; where an effect leaves hardly more than noise the rest is spared.
+    `known`: standard deviations of the friction; `against`: what the equations along the motion say of an effect.
     """
-    most_are_poor = q == QUANTILES[0]
-    begins = partial(by_sizes, alone, found) if most_are_poor else Tangents.of(alone, found, known).best
-    with ThreadPoolExecutor(2) as pool:
-        begin = list(pool.map(begins, names))
-    result = []
-    for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
-        refit = _fit(alone, found, model, name, known)
-        fitted, std = refit.model, {n: e.std for n, e in refit.estimates.items() if n.startswith(f"{name}.")}
-        train, after = (errors(fitted, events(fitted)) for events in (found.train, found.held))
-        result.append(Slipping(name, fitted, train, after, std))
-        if share_removed(held, result[-1].held, q) > ENOUGH:
-            break
-    return sorted(result, key=lambda s: float(np.quantile(s.train, q) + np.quantile(s.held, q)))
+
+    alone: Model
+    found: Slips
+    known: dict[str, float]
+    against: Against
+    held: Array
+    q: float
+
+    def tried(self, names: Sequence[str]) -> list[Slipping]:
+        """Those of the named effects that look best, fitted to the training events; smallest errors first.
+
+        Where an effect leaves hardly more than noise, the rest is spared.
+        """
+        most_are_poor = self.q == QUANTILES[0]
+        tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
+        begins = tangents.best if tangents else partial(by_sizes, self.alone, self.found)
+        with ThreadPoolExecutor(2) as pool:
+            begin = list(pool.map(begins, names))
+        result = list[Slipping]()
+        for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
+            result.append(self._fitted(name, model))
+            if self._explains(result[-1]):
+                return sorted(result, key=self._left)
+        possible = [c for c in result if c.against < CONTRADICTED]
+        if possible:
+            best = min(possible, key=self._left)
+            result[result.index(best)] = self._resized(best)
+        return sorted(result, key=self._left)
+
+    def _fitted(self, name: str, begin: Model) -> Slipping:
+        prior, effect = friction_priors(self.alone, self.known), coordinates(self.alone.library.find(name))
+        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
+        refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
+        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in effect}
+        train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
+        asked = share_removed(self.held, held, self.q) >= SHARE
+        loss = self.against(name, {n: fitted[n] for n in std}) if asked else 0.0
+        return Slipping(name, fitted, train, held, std, loss)
+
+    def _resized(self, c: Slipping) -> Slipping:
+        """A candidate that explains part, begun anew from other sizes as long as it explains more.
+
+        Friction that was refitted makes up for a size too small, and a descent along both stops early.
+        """
+        if share_removed(self.held, c.held, self.q) < PART:
+            return c
+        effect = coordinates(self.alone.library.find(c.name))
+        for factor in RESIZED:
+            first = c
+            while not self._explains(c):
+                new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
+                if self._left(new) > BETTER * self._left(c):
+                    break
+                c = new
+            if c is not first:
+                break
+        return c
+
+    def _explains(self, c: Slipping) -> bool:
+        return share_removed(self.held, c.held, self.q) > ENOUGH and c.against < CONTRADICTED
+
+    def _left(self, c: Slipping) -> float:
+        return float(np.quantile(c.train, self.q) + np.quantile(c.held, self.q))
 
 
-def _fit(alone: Model, found: Slips, begin: Model, name: str, known: dict[str, float]) -> Refit:
-    prior, effect = friction_priors(alone, known), coordinates(alone.library.find(name))
-    prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
-    return refit_segments(begin, found.train(begin), list(prior), prior)
+def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[str, float]:
+    """Sizes of an effect in `model`, so many times larger."""
+    sizes = [c for c in effect if c.is_size]
+    return {c.name: c.value(u - float(np.log(factor)) if c.logarithmic else factor * u)
+            for c in sizes for u in [c.u(model[c.name])]}  # fmt: skip
 
 
 def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
@@ -144,6 +205,8 @@ def as_trial(
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
+    if c.against >= CONTRADICTED:
+        enough = f"the equations along the motion speak against it (log likelihood -{c.against:.3g})"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is no larger than its uncertainty"
     z = deviations_better(base_held, c.held, samples)

@@ -36,6 +36,13 @@ def test_sizes_of_one_kind_are_all_kept() -> None:
     assert fitter(LEAKS).simplest(model, LEAKS) is model
 
 
+def test_the_equations_speak_against_an_effect_that_is_not_there() -> None:
+    start = fitter(LEAKS).start
+    values = {f"{LEAKS}.conductance_{side}": 0.0 for side in "ab"}
+    assert abs(fitter(LEAKS).against(start, LEAKS, values)) < 0.5
+    assert fitter(LEAKS).against(start, LEAKS, values | {f"{LEAKS}.conductance_a": 2e-10}) > 100.0
+
+
 @pytest.mark.parametrize("std", [1e-4, None])
 def test_what_is_known_from_elsewhere_holds_a_refit_by_prediction(std: float | None) -> None:
     """Static friction 2 % off: segments mend it, unless it is said to be known."""

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from pneumo_ros.discover import slip_trials
 from pneumo_ros.discover.coordinates import coordinates
-from pneumo_ros.discover.slip_trials import Slipping, as_trial, deviations_better
+from pneumo_ros.discover.slip_trials import Candidates, Slipping, as_trial, deviations_better, resized
+from pneumo_ros.discover.slips import Slips
 from pneumo_ros.discover.trial import Trial
 from pneumo_ros.plant import Model, load_model
 
@@ -41,6 +43,53 @@ def test_an_effect_that_touches_two_events_in_five_is_told_by_their_upper_quarti
     before, after = (1.05 + 0.003 * rng.standard_normal(40) for _ in range(2))
     before[:changed] = 30.0
     assert bool(tried(model, before, after, {f"{EFFECT}.rise": 1.5}, 0.75).objections) is objects
+
+
+def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
+    model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
+    before, after = np.full(40, 10.0), np.full(40, 1.0)
+    for against, objects in ((-3.0, False), (3.0, False), (60.0, True)):
+        candidate = Slipping(EFFECT, model, after, after, {f"{EFFECT}.rise": 1.5}, against)
+        trial = as_trial(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
+        assert any("speak against it" in words for words in trial.objections) is objects
+        assert bool(trial.objections) is objects
+
+
+def test_sizes_grow_and_shapes_stay() -> None:
+    """Of what fades in with a size that falls, as a bandwidth, the inverse grows."""
+    model = MODEL.with_effects([*MODEL.effects, EFFECT, "valve_spool_dynamics"], {f"{EFFECT}.rise": RISE})
+    assert resized(coordinates(MODEL.library.find(EFFECT)), model, 2.0) == {f"{EFFECT}.rise": 2.0 * RISE}
+    spool = resized(coordinates(MODEL.library.find("valve_spool_dynamics")), model, 2.0)
+    (name,) = [name for name, value in spool.items() if value != model[name]]
+    assert spool[name] == pytest.approx(0.5 * model[name])
+
+
+LAG, TRUE = "friction_lag", 8e-3
+BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # sizes that the candidates begin with
+
+
+class Stuck(Candidates):
+    """Fits that stay where they begin: so far from the true lag, so bad; the other candidate is refused, not bad."""
+
+    def _fitted(self, name: str, begin: Model) -> Slipping:
+        size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
+        error = np.full(40, 1.2 if name != LAG else 1.0 + 1.5 * abs(np.log2(size / TRUE)))
+        return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0)
+
+
+@pytest.mark.parametrize("begun", [2e-3, 32e-3, 8e-3])
+def test_a_fit_that_explains_part_is_begun_anew_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where another explains more that the equations along the motion speak against."""
+
+    def begins(alone: Model, _found: Slips, name: str) -> tuple[float, Model]:
+        key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)
+        return 1.0, alone.with_effects([*alone.effects, name], {key: BEGUN[name]})
+
+    monkeypatch.setattr(slip_trials, "by_sizes", begins)
+    monkeypatch.setitem(BEGUN, LAG, begun)
+    nothing = np.empty(0, dtype=np.int64)
+    tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([*BEGUN])
+    assert {c.name: c.model[f"{LAG}.time_constant"] for c in tried if c.name == LAG} == {LAG: pytest.approx(TRUE)}
 
 
 def test_events_that_nothing_changes_and_single_wild_ones_decide_nothing() -> None:
