@@ -107,10 +107,10 @@ class Candidates:
             result.append(self._fitted(name, model))
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
-        possible = [c for c in result if c.against < CONTRADICTED]
-        if possible:
-            best = min(possible, key=self._left)
-            result[result.index(best)] = self._resized(best)
+        for k, c in sorted(enumerate(result), key=lambda one: self._left(one[1])):
+            result[k] = self._resized(c)
+            if self._explains(result[k]):
+                break
         return sorted(result, key=self._left)
 
     def _fitted(self, name: str, begin: Model) -> Slipping:
@@ -126,7 +126,8 @@ class Candidates:
     def _resized(self, c: Slipping) -> Slipping:
         """A candidate that explains part, begun anew from other sizes as long as it explains more.
 
-        Friction that was refitted makes up for a size too small, and a descent along both stops early.
+        Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
+        the equations along the motion speak against.
         """
         if share_removed(self.held, c.held, self.q) < PART:
             return c
@@ -135,12 +136,18 @@ class Candidates:
             first = c
             while not self._explains(c):
                 new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
-                if self._left(new) > BETTER * self._left(c):
+                if not self._better(new, c):
                     break
                 c = new
             if c is not first:
                 break
         return c
+
+    def _better(self, new: Slipping, old: Slipping) -> bool:
+        """Whether it is worth another go: it explains more, or enough of what the other was refused for."""
+        if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
+            return self._left(new) <= BETTER * self._left(old)
+        return new.against < CONTRADICTED and share_removed(self.held, new.held, self.q) >= SHARE
 
     def _explains(self, c: Slipping) -> bool:
         return share_removed(self.held, c.held, self.q) > ENOUGH and c.against < CONTRADICTED
@@ -205,7 +212,7 @@ def as_trial(
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
     enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
-    if c.against >= CONTRADICTED:
+    if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
         enough = f"the equations along the motion speak against it (log likelihood -{c.against:.3g})"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is no larger than its uncertainty"
