@@ -91,6 +91,11 @@ class Coordinate:
             return (end - value) / (end - usual)
         return (1.0 / value - 1.0 / end) / (1.0 / usual - 1.0 / end)
 
+    def grown(self, value: float, factor: float) -> float:
+        """The value of a size so many times larger; of one that fades out towards its upper bound the inverse grows."""
+        u = self.u(value)
+        return self.value(u - float(np.log(factor)) if self.logarithmic else factor * u)
+
     def clip(self, u: float) -> float:
         """The nearest u whose value is allowed."""
         return self.u(self.value(u))

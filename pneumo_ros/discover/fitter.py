@@ -44,6 +44,7 @@ class Fitter:
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train = Evidence(start, train)
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
+        self._at_best = lru_cache(1)(lambda model: self._likelihood(self.refit(model)))
 
     @cached_property
     def held(self) -> Evidence:
@@ -97,7 +98,7 @@ class Fitter:
         With it and without, all else is at its best.
         """
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
-        return self._likelihood(self.refit(model)) - self._likelihood(larger, values)
+        return self._at_best(model) - self._likelihood(larger, values)
 
     def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
         """Log likelihood of the training evidence and of what is known of the parameters but those `fixed`."""

@@ -91,6 +91,4 @@ def _shapes(effect: tuple[Coordinate, ...]) -> Iterator[dict[str, float]]:
 def _values(effect: tuple[Coordinate, ...], own: tuple[Coordinate, ...], share: float) -> dict[str, float]:
     """Parameters of an effect in its usual shape: its sizes `own` that share of the usual one, the others none."""
     values = {c.name: c.value(0.0) if c.neutral is None else c.neutral for c in effect}
-    if share:  # what grows may be the inverse of the parameter
-        values |= {c.name: c.value(-float(np.log(share)) if c.logarithmic else share) for c in own}
-    return values
+    return values | {c.name: c.grown(c.typical, share) for c in own} if share else values

@@ -119,8 +119,8 @@ class Candidates:
         refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
         fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in effect}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
-        asked = share_removed(self.held, held, self.q) >= SHARE
-        loss = self.against(name, {n: fitted[n] for n in std}) if asked else 0.0
+        asked_for = self._share(held) >= SHARE
+        loss = self.against(name, {n: fitted[n] for n in std}) if asked_for else 0.0
         return Slipping(name, fitted, train, held, std, loss)
 
     def _resized(self, c: Slipping) -> Slipping:
@@ -129,28 +129,32 @@ class Candidates:
         Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
         the equations along the motion speak against.
         """
-        if share_removed(self.held, c.held, self.q) < PART:
+        if self._share(c.held) < PART:
             return c
+        ways = (self._followed(c, factor) for factor in RESIZED)
+        return next((other for other in ways if other is not c), c)
+
+    def _followed(self, c: Slipping, factor: float) -> Slipping:
+        """The last of the fits that begin at so many times the size of the one before and are better."""
         effect = coordinates(self.alone.library.find(c.name))
-        for factor in RESIZED:
-            first = c
-            while not self._explains(c):
-                new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
-                if not self._better(new, c):
-                    break
-                c = new
-            if c is not first:
+        while not self._explains(c):
+            new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
+            if not self._better(new, c):
                 break
+            c = new
         return c
 
     def _better(self, new: Slipping, old: Slipping) -> bool:
         """Whether it is worth another go: it explains more, or enough of what the other was refused for."""
         if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
             return self._left(new) <= BETTER * self._left(old)
-        return new.against < CONTRADICTED and share_removed(self.held, new.held, self.q) >= SHARE
+        return new.against < CONTRADICTED and self._share(new.held) >= SHARE
 
     def _explains(self, c: Slipping) -> bool:
-        return share_removed(self.held, c.held, self.q) > ENOUGH and c.against < CONTRADICTED
+        return self._share(c.held) > ENOUGH and c.against < CONTRADICTED
+
+    def _share(self, held: Array) -> float:
+        return share_removed(self.held, held, self.q)
 
     def _left(self, c: Slipping) -> float:
         return float(np.quantile(c.train, self.q) + np.quantile(c.held, self.q))
@@ -158,9 +162,7 @@ class Candidates:
 
 def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[str, float]:
     """Sizes of an effect in `model`, so many times larger."""
-    sizes = [c for c in effect if c.is_size]
-    return {c.name: c.value(u - float(np.log(factor)) if c.logarithmic else factor * u)
-            for c in sizes for u in [c.u(model[c.name])]}  # fmt: skip
+    return {c.name: c.grown(model[c.name], factor) for c in effect if c.is_size}
 
 
 def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
