@@ -16,8 +16,8 @@ import numpy as np
 from pneumo_ros.identify.campaign import FRICTION, Identification, identify
 from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS
 from pneumo_ros.identify.presliding import STIFFNESS
-from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.runs.run import PARTS, Run
 
 VOLTAGES = (0.80, 0.83, 0.90, 1.0, 1.3, 2.0, 7.0)
 SECONDS, SAMPLE_TIME = 8.0, 1e-3

@@ -80,8 +80,8 @@ def recorded(case: Any) -> list[Any]:
     from rig import bags
     from rig import case as rig_case
 
-    from pneumo_ros.identify.run import make_run
     from pneumo_ros.records import read_recording
+    from pneumo_ros.runs.run import make_run
 
     with tempfile.TemporaryDirectory() as folder:
         runs = []
@@ -115,7 +115,7 @@ def found(outcome: Any) -> dict[str, Any]:
 
 def diagnosed(kind: str, seed: int, strength: float) -> dict[str, Any]:
     """Record and diagnose one case."""
-    from pneumo_ros.discover.diagnosis import diagnose
+    from pneumo_ros.diagnose.diagnosis import diagnose
     from pneumo_ros.plant import load_model
 
     result: dict[str, Any] = {"code": code_hash(), "kind": kind, "seed": seed, "strength": strength}

@@ -6,10 +6,10 @@ from control_cases import AXIS, SINE, SINE_BEGIN, SINE_SECONDS, follow, shipped
 from pneumo_ros.command.trials import SAMPLE_TIME, stepper
 from pneumo_ros.control.figures import Tracking, tracking
 from pneumo_ros.control.reference import moves, sine
-from pneumo_ros.discover.diagnosis import diagnose
-from pneumo_ros.discover.outcome import Outcome
-from pneumo_ros.identify.run import PARTS, Run
+from pneumo_ros.diagnose.diagnosis import diagnose
+from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import PARTS, Run
 
 LOAD = 40.0  # N: 5 kg on an axis inclined by 55 degrees
 HIDDEN = AXIS.with_effects([*AXIS.effects, "constant_load"], {"constant_load.load": LOAD})

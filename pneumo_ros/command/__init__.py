@@ -1,6 +1,5 @@
-"""`pneumo`: one verb, one file: arguments, one call, output; no physics.
+"""`pneumo`: what its verbs share: arguments, console, texts and JSON of results. No physics.
 
-A verb is a module with a one-line docstring (what `pneumo` lists), `add_arguments(parser)` and
-`run(options, console) -> exit code`. Whatever is slow to import or not always installed (numpy, numba, rosbags) it
-imports inside `run`, so that help and misspelt names are answered at once. `main.VERBS` names it.
+Whatever is slow to import or not always installed (numpy, numba, rosbags) is imported inside functions, so that help
+and misspelt names are answered at once. `main.VERBS` names the verbs, which lie in `verb`.
 """

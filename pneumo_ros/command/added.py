@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.console import columns
 from pneumo_ros.command.diagnosed import added, by_signal, listed, moved
 from pneumo_ros.command.diagnosis_json import equations_dict, value_dict
-from pneumo_ros.diagnose.wording import EQUATIONS, put_off, times
+from pneumo_ros.compare.wording import EQUATIONS, put_off, times
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.adding import Adding
-    from pneumo_ros.identify.refit import Estimate
+    from pneumo_ros.diagnose.adding import Adding
+    from pneumo_ros.shooting.refit import Estimate
 
 HEADS = {"given": "as given", "before": "refitted", "after": "with it", "noise": "noise"}
 
 
 def adding_dict(found: "Adding") -> dict[str, Any]:
     """Errors are over windows of one second; `held_out` says whether on runs that took no part in the fit."""
-    from pneumo_ros.diagnose.moved import estimates_dict
-    from pneumo_ros.discover.diagnosis import noise_levels, signal_errors
+    from pneumo_ros.compare.moved import estimates_dict
+    from pneumo_ros.diagnose.diagnosis import noise_levels, signal_errors
 
     given, before, after = found.errors
     return {

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pneumo_ros.command.console import columns
-from pneumo_ros.diagnose.wording import (
+from pneumo_ros.compare.wording import (
     EQUATIONS,
     SIGNALS,
     VARIABLES,

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import Comparison
-    from pneumo_ros.discover.between import Moved
-    from pneumo_ros.discover.outcome import Addition, Outcome, Ranked, Unexplained
-    from pneumo_ros.discover.trial import Trial
-    from pneumo_ros.identify.refit import Estimate
+    from pneumo_ros.compare.compare import Comparison
+    from pneumo_ros.diagnose.between import Moved
+    from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained
+    from pneumo_ros.diagnose.trial import Trial
     from pneumo_ros.plant import Model
+    from pneumo_ros.shooting.refit import Estimate
 
 SCHEMA_VERSION = 1
 NORMAL = 1.96  # deviations of a 95 % interval
@@ -22,7 +22,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
 
     estimates: of all that is free in the final model; experiment: what to record next, "" for nothing.
     """
-    from pneumo_ros.diagnose.moved import estimates_dict
+    from pneumo_ros.compare.moved import estimates_dict
 
     return {
         "schema_version": SCHEMA_VERSION,

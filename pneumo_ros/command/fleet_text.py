@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pneumo_ros.command.console import columns
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 
 
 def text(result: Mapping[str, Any]) -> str:

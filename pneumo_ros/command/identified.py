@@ -5,7 +5,7 @@ import re
 from typing import Any
 
 from pneumo_ros.command.console import columns
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 
 _SHOWN_STRETCHES = 4  # of a run; the others are counted
 

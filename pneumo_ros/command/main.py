@@ -26,7 +26,7 @@ VERBS = (
     "fleet",
     "view",
     "workbench",
-)  # in the order help lists them; each is a module beside this one
+)  # in the order help lists them; each is a module of the room `verb`
 
 EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong usage, 3 unreadable or unfit data,
 4 numerical failure, 130 interrupted"""
@@ -74,7 +74,7 @@ def _verb(name: str) -> ModuleType:
         kind = "option" if name.startswith("-") else "verb"
         allowed = ("--help", "--version") if kind == "option" else VERBS
         raise UsageError(f"{unknown_name(kind, name, allowed)} (see: pneumo --help)")
-    return import_module(f"pneumo_ros.command.{name}")
+    return import_module(f"pneumo_ros.command.verb.{name}")
 
 
 def verb_parser(name: str, verb: ModuleType) -> Parser:

@@ -10,9 +10,9 @@ from pneumo_ros.command.console import Console
 from pneumo_ros.errors import DataError
 
 if TYPE_CHECKING:
-    from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
     from pneumo_ros.records import Recording
+    from pneumo_ros.runs.run import Run
 
 ATMOSPHERE = 101325.0  # Pa, for machines that do not say
 
@@ -39,11 +39,11 @@ def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
 
 def read_run(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "tuple[Recording, Run]":
     """One recording as `options` say, and on a uniform grid; notes and errors as `read_runs`."""
-    from pneumo_ros.identify.cuts import parse_cuts, without
-    from pneumo_ros.identify.plausible import check_run
-    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.reading.plausible import check_run
     from pneumo_ros.records import read_recording
     from pneumo_ros.records.corrections import corrected, parse_words
+    from pneumo_ros.runs.cuts import parse_cuts, without
+    from pneumo_ros.runs.run import make_run
 
     words = parse_words(options.read_as)
     recording = read_recording(path, options.namespace, options.joint)

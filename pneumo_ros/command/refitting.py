@@ -9,8 +9,8 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable
 
 if TYPE_CHECKING:
-    from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
+    from pneumo_ros.runs.run import Run
 
 
 def add_refit(parser: argparse.ArgumentParser) -> None:
@@ -30,9 +30,9 @@ def refitted(
         if options.out:
             raise UsageError("--out writes the refitted machine file; add --refit, or --fit BAG...")
         return model, None
-    from pneumo_ros.diagnose.moved import refit_dict
-    from pneumo_ros.identify.refit import refit
+    from pneumo_ros.compare.moved import refit_dict
     from pneumo_ros.plant import save_model
+    from pneumo_ros.shooting.refit import refit
 
     if options.out:
         check_writable(options.out)

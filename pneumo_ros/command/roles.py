@@ -11,8 +11,8 @@ from pneumo_ros.command.recordings import expanded, read_expanded
 from pneumo_ros.errors import UsageError
 
 if TYPE_CHECKING:
-    from pneumo_ros.identify.run import Run
     from pneumo_ros.plant import Model
+    from pneumo_ros.runs.run import Run
 
 _KEPT = "hold"  # recordings of such names are meant to be held out
 

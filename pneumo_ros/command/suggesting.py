@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING
 
 from pneumo_ros.command.console import Console
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES
+from pneumo_ros.compare.wording import EQUATIONS, VARIABLES
 from pneumo_ros.errors import PneumoError
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Addition, Outcome, Unexplained
+    from pneumo_ros.diagnose.outcome import Addition, Outcome, Unexplained
 
 # variable that a residual follows -> experiment that takes it through its range while the others stay
 SHOWING = {

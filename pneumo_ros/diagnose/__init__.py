@@ -1,1 +1,1 @@
-"""Where a model fails against measurements, and why."""
+"""What `pneumo diagnose` and `pneumo add` run: which physical effect a model lacks, ranked, confirmed and added."""

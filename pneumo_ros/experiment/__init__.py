@@ -1,1 +1,1 @@
-"""What to make a plant do so that its recordings tell something: programmes, and who conducts them. No ROS."""
+"""Programmes of trials, which of them separate two effects, and how a live plant is taken through one. No ROS."""

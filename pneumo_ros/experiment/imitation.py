@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from pneumo_ros.experiment.evidence import Evidence
-from pneumo_ros.identify.refit import PRIOR, default_free
 from pneumo_ros.plant import Model
+from pneumo_ros.shooting.refit import PRIOR, default_free
 
 Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]

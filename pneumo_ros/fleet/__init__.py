@@ -1,1 +1,1 @@
-"""Many machines over a long time: each campaign examined by itself, then what changed from one to the next."""
+"""Many machines over a long time: each campaign is examined by itself, then compared with the ones before."""

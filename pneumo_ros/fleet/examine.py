@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pneumo_ros.discover.adding import estimates_along
-from pneumo_ros.discover.diagnosis import conclude
-from pneumo_ros.discover.search import Search
+from pneumo_ros.diagnose.adding import estimates_along
+from pneumo_ros.diagnose.diagnosis import conclude
+from pneumo_ros.diagnose.search import Search
 from pneumo_ros.errors import DataError
 from pneumo_ros.identify.campaign import identify
-from pneumo_ros.identify.plausible import check_run
-from pneumo_ros.identify.run import Run, make_run
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.reading.plausible import check_run
 from pneumo_ros.records import read_recording
+from pneumo_ros.runs.run import Run, make_run
 
 HELD = "hold"  # recordings of such names are not fitted: they judge
 NORMAL = 1.96  # deviations of a 95 % interval

@@ -1,1 +1,1 @@
-"""From recordings to numbers: noise, velocities, starting states, prediction windows and residuals of the equations."""
+"""What `pneumo identify` runs: static friction map, breakaways, flow and presliding from constant-voltage runs."""

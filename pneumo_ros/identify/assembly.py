@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.breakaway import Breakaway
+from pneumo_ros.equations.breakaway import Breakaway
 from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS, fit_flow
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.motion import MotionFit, fit_motion
 from pneumo_ros.identify.presliding import fit_presliding
-from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.static_map import MapFit, MapPoint
 from pneumo_ros.identify.steady import Window
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
 
 STATIC, COULOMB = "lugre_friction.static_friction", "lugre_friction.coulomb_friction"
 STRIBECK, DRAG = "lugre_friction.stribeck_velocity", "quadratic_drag.coefficient"

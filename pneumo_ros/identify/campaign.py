@@ -9,15 +9,15 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.assembly import ADDED, COULOMB, DRAG, STATIC, STRIBECK, Assembly, Found
-from pneumo_ros.identify.breakaway import Breakaway, find_breakaways
 from pneumo_ros.identify.flow import COEFFICIENTS
 from pneumo_ros.identify.friction_map import fit_map
-from pneumo_ros.identify.run import Run, check_position
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
 from pneumo_ros.identify.steady import Window, find_windows
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run, check_position
 
 Progress = Callable[[float, str], None]
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from pneumo_ros.equations.breakaway import Breakaway
 from pneumo_ros.errors import DataError
-from pneumo_ros.identify.breakaway import Breakaway
 from pneumo_ros.identify.confidence import central_jacobian, half_widths
 from pneumo_ros.identify.static_map import MapFit, MapPoint, sliding_friction
 from pneumo_ros.plant import Model

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.breakaway import Breakaway
+from pneumo_ros.equations.breakaway import Breakaway
 from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS
 from pneumo_ros.identify.friction_map import LOOSE
 from pneumo_ros.identify.presliding import STIFFNESS
-from pneumo_ros.identify.refit import Estimate, refit_segments
-from pneumo_ros.identify.run import Run
-from pneumo_ros.identify.segments import cut_at
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.refit import Estimate, refit_segments
+from pneumo_ros.shooting.segments import cut_at
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.breakaway import Breakaway, holding_force
-from pneumo_ros.identify.run import Run
+from pneumo_ros.equations.breakaway import Breakaway, holding_force
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 

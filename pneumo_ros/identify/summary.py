@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from pneumo_ros.identify.campaign import Identification
-from pneumo_ros.identify.run import Run
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.identify.steady import WINDOW, Window
+from pneumo_ros.runs.run import Run
 
 STRONG = 0.9  # correlation beyond which two parameters are said to be known together rather than one by one
 MISFIT = 3.0  # residuals over noise beyond which noise does not explain them

@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.diagnose.wording import VARIABLES, amount, times
-from pneumo_ros.discover.outcome import ADEQUATE, FOUND, UNKNOWN
+from pneumo_ros.compare.wording import VARIABLES, amount, times
+from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN
 from pneumo_ros.report.chart import Badge, Section
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.naming import effect_words, interval, listed, resolved, the
 from pneumo_ros.report.residuals import FOLLOWS
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Addition, Outcome
+    from pneumo_ros.diagnose.outcome import Addition, Outcome
     from pneumo_ros.plant import Model
 
 ENOUGH = 1.3  # times the noise: more than noise and the estimate of a start explain

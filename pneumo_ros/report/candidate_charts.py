@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.discover.trial import GAIN_LEAST, T_LEAST
+from pneumo_ros.diagnose.trial import GAIN_LEAST, T_LEAST
 from pneumo_ros.report.bars import bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
 from pneumo_ros.report.naming import effect_words, sentence
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Ranked
+    from pneumo_ros.diagnose.outcome import Ranked
 
 Array = NDArray[np.float64]
 

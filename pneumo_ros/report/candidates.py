@@ -5,17 +5,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import number, percent
-from pneumo_ros.discover.court import sizes
-from pneumo_ros.discover.trial import GAIN_LEAST, T_LEAST
+from pneumo_ros.compare.wording import number, percent
+from pneumo_ros.diagnose.court import sizes
+from pneumo_ros.diagnose.trial import GAIN_LEAST, T_LEAST
 from pneumo_ros.report.candidate_charts import candidate_charts
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.naming import NORMAL, effect_words, equation_words, listed, resolved
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Outcome, Ranked
-    from pneumo_ros.discover.trial import Trial
+    from pneumo_ros.diagnose.outcome import Outcome, Ranked
+    from pneumo_ros.diagnose.trial import Trial
 
 ADDED, RIVAL, REFUSED = "added", "rival", "refused"
 

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.diagnose.findings import findings, verdict
-from pneumo_ros.diagnose.wording import TARGETS, amount
+from pneumo_ros.compare.findings import findings, verdict
+from pneumo_ros.compare.wording import TARGETS, amount
 from pneumo_ros.report.chart import HeatMap, Report, Section
 from pneumo_ros.report.equations import equations_section
 from pneumo_ros.report.friction import friction_section
@@ -14,7 +14,7 @@ from pneumo_ros.report.regimes import regimes_section
 from pneumo_ros.report.runs import runs_section, thinning
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import Comparison
+    from pneumo_ros.compare.compare import Comparison
     from pneumo_ros.plant import Model
 
 

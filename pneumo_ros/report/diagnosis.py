@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.discover.outcome import UNKNOWN
+from pneumo_ros.diagnose.outcome import UNKNOWN
 from pneumo_ros.report.answer import answer_section, badge, verdict_sentence
 from pneumo_ros.report.candidates import candidates_section
 from pneumo_ros.report.chart import Report, Section
@@ -15,7 +15,7 @@ from pneumo_ros.report.residuals import residuals_section
 from pneumo_ros.report.waterfall import waterfall_section
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Outcome
+    from pneumo_ros.diagnose.outcome import Outcome
 
 
 def diagnosis_report(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import times
+from pneumo_ros.compare.wording import times
 from pneumo_ros.report.chart import Chart, HeatMap, Panel, Trace
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, percent, times
+from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Section, Trace
 from pneumo_ros.report.markup import tag
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Chart, Panel, Report, Section, Trace
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.origin import origin_section

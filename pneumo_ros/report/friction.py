@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.markup import tag
 

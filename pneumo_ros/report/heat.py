@@ -1,6 +1,6 @@
 """The heat map: a table, so that it works by keyboard, by ear, and without scripts."""
 
-from pneumo_ros.diagnose.wording import times
+from pneumo_ros.compare.wording import times
 from pneumo_ros.report.chart import HeatMap
 from pneumo_ros.report.markup import Html, scrolling, tag
 

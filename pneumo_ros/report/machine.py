@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 from pneumo_ros.plant.machine_file import machine_text
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Content, Html, table, tag

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from pneumo_ros.diagnose.wording import EQUATIONS, number
+from pneumo_ros.compare.wording import EQUATIONS, number
 
 NORMAL = 1.96  # deviations that hold 95 %
 

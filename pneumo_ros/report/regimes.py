@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pneumo_ros.diagnose.wording import REGIMES, TARGETS, percent, times
+from pneumo_ros.compare.wording import REGIMES, TARGETS, percent, times
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.heat import heat
 from pneumo_ros.report.markup import Html, scrolling, tag

@@ -4,14 +4,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, machine_changed, number, percent, times
+from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, machine_changed, number, percent, times
 from pneumo_ros.report.chart import Chart, Section
 from pneumo_ros.report.markup import Html, tag
 from pneumo_ros.report.naming import equation_words, listed, sentence, the
 from pneumo_ros.report.residuals import FOLLOWS, curve, framed
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Outcome, Unexplained
+    from pneumo_ros.diagnose.outcome import Outcome, Unexplained
 
 
 def remains_section(outcome: "Outcome", experiment: str) -> Section:

@@ -2,16 +2,16 @@
 
 from typing import TYPE_CHECKING
 
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, percent, times
+from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.equations import broken, coverage
 from pneumo_ros.report.markup import tag
 from pneumo_ros.report.naming import equation_words, sentence
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import Comparison
-    from pneumo_ros.diagnose.dependence import Dependence
-    from pneumo_ros.discover.outcome import Outcome
+    from pneumo_ros.compare.compare import Comparison
+    from pneumo_ros.compare.dependence import Dependence
+    from pneumo_ros.diagnose.outcome import Outcome
 
 _HEIGHT = 400
 FOLLOWS = 0.1  # share from which on a variable is worth naming

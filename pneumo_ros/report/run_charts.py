@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.regimes import stretches
-from pneumo_ros.diagnose.wording import EQUATIONS, REGIMES, SIGNALS, amount, percent, times
+from pneumo_ros.compare.regimes import stretches
+from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, amount, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
 from pneumo_ros.report.series import extremes
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import RunComparison
+    from pneumo_ros.compare.compare import RunComparison
 
 Array = NDArray[np.float64]
 

@@ -4,14 +4,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import REGIMES, TARGETS, amount, percent, times
+from pneumo_ros.compare.wording import REGIMES, TARGETS, amount, percent, times
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Html, table, tag
 from pneumo_ros.report.regimes import regime_table
 from pneumo_ros.report.run_charts import run_charts
 
 if TYPE_CHECKING:
-    from pneumo_ros.diagnose.compare import Comparison, RunComparison
+    from pneumo_ros.compare.compare import Comparison, RunComparison
 
 BUDGET = 3_600_000  # characters that the series of a page may take; the rest of ten megabytes is plotly's and tables
 # Characters a value takes, rounded up from what recordings with 10 um and 300 Pa of noise took: all of them, thinned

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pneumo_ros.diagnose.wording import SIGNALS, amount, put_off, times
+from pneumo_ros.compare.wording import SIGNALS, amount, put_off, times
 from pneumo_ros.report.bars import Rows, bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.naming import change, effect_words
 
 if TYPE_CHECKING:
-    from pneumo_ros.discover.outcome import Outcome
+    from pneumo_ros.diagnose.outcome import Outcome
 
 _DECADES = 8.0  # from this ratio on, the axis is logarithmic
 _ROOM = 0.2  # of the axis, right of the longest bar: for its label

@@ -1,4 +1,4 @@
-"""Much of the same work: over processes or a cluster, gone on with where it stopped, done again where a worker died."""
+"""The same work for many keys, over processes or a cluster: it resumes, and repeats what a dead worker had begun."""
 
 from pneumo_ros.sweep.executors import Pool, open_pool
 from pneumo_ros.sweep.journal import Journal

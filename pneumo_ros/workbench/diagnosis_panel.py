@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from dash import ClientsideFunction, Input, Output, dcc, html
 
-from pneumo_ros.diagnose.wording import EQUATIONS, VARIABLES, amount, number, percent, times
+from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, number, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Section, Trace
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.naming import effect_words, interval, listed, sentence
@@ -80,7 +80,7 @@ def _addition(one: dict[str, Any]) -> Html:
 
 
 def _evidence(result: dict[str, Any]) -> Section:
-    from pneumo_ros.discover.outcome import Ranked
+    from pneumo_ros.diagnose.outcome import Ranked
     from pneumo_ros.report.candidate_charts import candidate_charts
 
     found = result["candidates"]

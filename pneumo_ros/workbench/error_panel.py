@@ -4,7 +4,7 @@ from typing import Any
 
 from dash import ClientsideFunction, Input, Output, dcc, html
 
-from pneumo_ros.diagnose.wording import SIGNALS, amount, number, times
+from pneumo_ros.compare.wording import SIGNALS, amount, number, times
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Html, tag
 from pneumo_ros.report.naming import change

@@ -4,7 +4,7 @@ from typing import Any
 
 from dash import ClientsideFunction, Input, Output, dcc, html
 
-from pneumo_ros.diagnose.findings import verdict
+from pneumo_ros.compare.findings import verdict
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import tag
 from pneumo_ros.workbench.desk import Desk

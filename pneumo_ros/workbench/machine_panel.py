@@ -7,7 +7,7 @@ from typing import Any
 from dash import ALL, Input, Output, State, dcc, html
 from dash.exceptions import PreventUpdate
 
-from pneumo_ros.diagnose.wording import number
+from pneumo_ros.compare.wording import number
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.catalogue import body, catalogue, helpers, room, summary
 from pneumo_ros.plant.effect import Effect

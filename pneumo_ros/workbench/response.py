@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.identify.guess import measured_columns
-from pneumo_ros.identify.run import PARTS, Run
-from pneumo_ros.identify.start import start_states
+from pneumo_ros.equations.guess import measured_columns
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.effect import Parameter
 from pneumo_ros.plant.sensing import sense
+from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.shooting.start import start_states
 
 Array = NDArray[np.float64]
 REACH = 4.0  # a slider goes from a quarter to four times a value

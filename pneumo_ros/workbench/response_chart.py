@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
-from pneumo_ros.diagnose.wording import SIGNALS, number
+from pneumo_ros.compare.wording import SIGNALS, number
 from pneumo_ros.plant import Model
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.thin import Span, in_view, packed
@@ -61,7 +61,7 @@ def _trace(role: str, time: Any, values: Any) -> dict[str, Any]:
 @lru_cache(8)
 def _begun(desk: Desk, _chosen: int, name: str, span: Span) -> Any:
     """The stretch with its start, and the response of the machine at hand."""
-    from pneumo_ros.identify.run import make_run
+    from pneumo_ros.runs.run import make_run
     from pneumo_ros.workbench.response import respond, stretch
 
     bag = desk.shelf.bag(name)

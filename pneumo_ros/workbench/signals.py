@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.wording import SIGNALS
+from pneumo_ros.compare.wording import SIGNALS
 from pneumo_ros.records import Recording
 from pneumo_ros.report.chart import Role
 from pneumo_ros.workbench.bags import Bag

@@ -5,7 +5,7 @@ from typing import Any
 from dash import ClientsideFunction, Input, Output, State, ctx, dcc, html
 from dash.exceptions import PreventUpdate
 
-from pneumo_ros.diagnose.wording import REGIMES, SIGNALS
+from pneumo_ros.compare.wording import REGIMES, SIGNALS
 from pneumo_ros.workbench.data import cursors_of
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.parts import Panels, asked, button, choice, drop_down, revision, table

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from command.lacking import VISCOUS, shelf
 
-from pneumo_ros.command.add import told_apart
 from pneumo_ros.command.main import main
+from pneumo_ros.command.verb.add import told_apart
 from pneumo_ros.plant import load_model
 
 

@@ -13,9 +13,9 @@ from identify.making import own, rig
 from rig import bags
 
 from pneumo_ros.command.main import main
-from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import save_model
 from pneumo_ros.records import write_recording
+from pneumo_ros.runs.run import Run
 
 EPOCH = 1_700_000_000 * 10**9
 

@@ -10,7 +10,8 @@ import pytest
 from hiding import environment_without
 
 from pneumo_ros import __version__
-from pneumo_ros.command import effects, main
+from pneumo_ros.command import main
+from pneumo_ros.command.verb import effects
 from pneumo_ros.errors import DataError, NumericalError, PneumoError
 
 
@@ -118,7 +119,8 @@ def test_a_closed_pipe_is_no_traceback() -> None:
 
 
 def test_interrupt_ends_with_130() -> None:
-    program = "import os,signal; from pneumo_ros.command import effects, main\n"
+    program = "import os,signal; from pneumo_ros.command import main\n"
+    program += "from pneumo_ros.command.verb import effects\n"
     program += "effects.run = lambda *_: os.kill(os.getpid(), signal.SIGINT)\nraise SystemExit(main.main(['effects']))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 130

@@ -8,7 +8,7 @@ import pytest
 from command.lacking import record
 
 from pneumo_ros.command.main import main
-from pneumo_ros.command.view import BLOCKS, GAP, sparkline
+from pneumo_ros.command.verb.view import BLOCKS, GAP, sparkline
 
 
 def test_every_signal_has_its_range_and_its_course(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.records import write_recording
+from pneumo_ros.runs.run import PARTS, Run
 
 POSITION_NOISE, PRESSURE_NOISE = 10e-6, 300.0
 CLOSED = 0.1  # s before the valve opens

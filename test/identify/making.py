@@ -10,9 +10,9 @@ from rig.effects import Wish, build
 from rig.machine import Machine
 from rig.sensors import Run as RigRun
 
-from pneumo_ros.identify.run import PARTS, Run, make_run
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.records import Recording
+from pneumo_ros.runs.run import PARTS, Run, make_run
 
 POSITION_NOISE, QUANTUM, PRESSURE_NOISE = 5e-6, 1e-5, 300.0
 POSITION_FLOOR = float(np.hypot(POSITION_NOISE, QUANTUM / np.sqrt(12.0)))

@@ -14,10 +14,10 @@ from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.campaign import FRICTION, Identification, identify
 from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS
 from pneumo_ros.identify.presliding import DAMPING, STIFFNESS
-from pneumo_ros.identify.run import make_run
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Model, load_model, save_model
 from pneumo_ros.records import read_recording
+from pneumo_ros.runs.run import make_run
 
 STATIC, COULOMB, STRIBECK, DRAG = FRICTION[:4]
 RECORDED = Path(os.environ.get("PNEUMO_RIG", Path(__file__).parents[3] / "shared" / "rig")) / "healthy"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from identify.constant import truth, wrong
 
+from pneumo_ros.equations.breakaway import Breakaway
 from pneumo_ros.errors import DataError
-from pneumo_ros.identify.breakaway import Breakaway
 from pneumo_ros.identify.campaign import FRICTION
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, sliding_friction

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.identify.breakaway import find_breakaways
+from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.identify.presliding import DAMPING, STIFFNESS, Presliding, fit_presliding, passive_damping
-from pneumo_ros.identify.run import Run
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
 
 
 def fit(model: Model, runs: list[Run]) -> Presliding:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from identify.constant import CLOSED, constant_run, states, truth
 
-from pneumo_ros.identify.run import PARTS, Run
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.identify.steady import WINDOW, Window, find_windows
+from pneumo_ros.runs.run import PARTS, Run
 
 VOLTAGES = [0.83, -0.83, 1.0, -2.0, 7.0]
 

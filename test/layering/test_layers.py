@@ -1,56 +1,22 @@
-"""Dependencies point one way, and only the nodes know ROS."""
+"""Dependencies point one way, only the nodes know ROS, and CONTRIBUTING says so."""
 
 import ast
+import re
 import subprocess
 import sys
+from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
-import pytest
 from hiding import environment_without
 
 import pneumo_ros
 
 PACKAGE = Path(pneumo_ros.__file__).parent
-ROOT = {
-    "errors",
-    "nearest",
-    "files",
-    "environment",
-    "yaml_text",
-    "__init__",
-}  # beneath every room; they import each other only
-
-# What each room may import besides itself and the modules above
-ALLOWED = {
-    "plant": set(),
-    "records": set(),
-    "control": set(),
-    "config": set(),
-    "sweep": set(),
-    "fleet": {"sweep", "discover", "diagnose", "identify", "plant", "records", "control"},
-    "identify": {"plant", "records", "control"},
-    "diagnose": {"identify", "plant", "records", "control"},
-    "experiment": {"identify", "plant", "records", "control"},
-    "discover": {"diagnose", "identify", "plant", "records", "control"},
-    "report": {"fleet", "discover", "diagnose", "identify", "plant", "records", "control"},
-    "workbench": {"report", "discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
-    "ros": {"discover", "experiment", "diagnose", "identify", "plant", "records", "control"},
-    "command": {
-        "workbench",
-        "fleet",
-        "sweep",
-        "report",
-        "discover",
-        "experiment",
-        "diagnose",
-        "identify",
-        "plant",
-        "records",
-        "control",
-    },
-    "__main__": {"command"},
-}
+CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
+BESIDE = {"errors", "nearest", "files", "environment", "yaml_text", "__init__"}  # modules below every room
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", "rosidl_runtime_py", "rosbag2_py"}
+FILES = sorted(PACKAGE.rglob("*.py"))
 
 
 def is_ros(module: str) -> bool:
@@ -58,7 +24,8 @@ def is_ros(module: str) -> bool:
     return module in ROS or module.endswith(("_msgs", "_srvs", "_interfaces"))
 
 
-def imports(path: Path) -> set[str]:
+@cache
+def imports(path: Path) -> frozenset[str]:
     """Absolute names of all modules a file imports, wherever in the file it does so."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -67,36 +34,52 @@ def imports(path: Path) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import; write it in full"
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return names
-
-
-FILES = sorted(PACKAGE.rglob("*.py"))
+    return frozenset(names)
 
 
 def room_of(path: Path) -> str:
     """The part of the package a file belongs to: its top folder, or its own name."""
-    first = path.relative_to(PACKAGE).parts[0]
-    return first.removesuffix(".py")
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_a_file_imports_only_what_lies_below_it(path: Path) -> None:
-    room = room_of(path)
-    allowed = ROOT if room in ROOT else ROOT | {room} | ALLOWED[room]
-    ours = {name.split(".")[1] for name in imports(path) if name.startswith("pneumo_ros.")}
-    ours.discard("__version__")
-    assert ours <= allowed, f"{room} must not import {sorted(ours - allowed)}"
+def imported_rooms() -> dict[str, set[str]]:
+    """What the files of each room import of other rooms; a name that is no room stands for the package itself."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for path in FILES:
+        ours = {name.split(".")[1] for name in imports(path) if name.startswith("pneumo_ros.")}
+        found[room_of(path)] |= ours - {room_of(path), "__version__"}
+    return found
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_only_nodes_import_ros(path: Path) -> None:
-    ros = sorted(name for name in imports(path) if is_ros(name.partition(".")[0]))
-    assert not ros or room_of(path) == "ros", f"imports {ros}"
+def table() -> dict[str, tuple[str, list[str]]]:
+    """The rooms that CONTRIBUTING lists, in its order: what each is, and which rooms it imports."""
+    rows = re.findall(r"^\| `(\w+)` \| (.+) \| (.*) \|$", CONTRIBUTING.read_text(encoding="utf-8"), re.MULTILINE)
+    return {room: (what, re.findall(r"\w+", below)) for room, what, below in rows}
 
 
-def test_every_room_has_its_rule() -> None:
-    rooms = {room_of(path) for path in FILES} - ROOT
-    assert rooms <= set(ALLOWED), f"say in ALLOWED what these may import: {sorted(rooms - set(ALLOWED))}"
+def test_contributing_lists_every_room_with_its_sentence() -> None:
+    rooms = {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").exists()}
+    assert set(table()) == rooms
+    for room, (what, _) in table().items():
+        docstring = ast.get_docstring(ast.parse((PACKAGE / room / "__init__.py").read_text(encoding="utf-8"))) or ""
+        assert what == docstring.splitlines()[0], f"{room}: its docstring and CONTRIBUTING differ"
+
+
+def test_imports_are_those_that_contributing_lists() -> None:
+    order = list(table())
+    for room, found in imported_rooms().items():
+        if room in BESIDE:
+            assert found <= BESIDE, f"{room} must not import {sorted(found - BESIDE)}"
+        elif room != "__main__":
+            listed = table()[room][1]
+            assert found - BESIDE == set(listed), f"{room}: CONTRIBUTING and the files differ"
+            assert all(order.index(below) < order.index(room) for below in listed), f"{room} imports what is above it"
+
+
+def test_only_nodes_import_ros() -> None:
+    for path in FILES:
+        ros = sorted(name for name in imports(path) if is_ros(name.partition(".")[0]))
+        assert not ros or room_of(path) == "ros", f"{path} imports {ros}"
 
 
 def test_physics_recordings_and_verbs_run_without_ros(tmp_path: Path) -> None:

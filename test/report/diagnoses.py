@@ -7,14 +7,14 @@ import numpy as np
 from identify.making import POSITION_NOISE, PRESSURE_NOISE, QUANTUM, voltage
 
 from pneumo_ros.command.console import plain
-from pneumo_ros.discover.diagnosis import diagnose
-from pneumo_ros.discover.outcome import Outcome
-from pneumo_ros.identify.run import PARTS, Run
+from pneumo_ros.diagnose.diagnosis import diagnose
+from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.plant.library import Library
 from pneumo_ros.report.chart import Report
 from pneumo_ros.report.diagnosis import diagnosis_report
 from pneumo_ros.report.provenance import provenance
+from pneumo_ros.runs.run import PARTS, Run
 
 HOSTILE = """<img src=x onerror="window.hacked=1">'"&</script><script>window.hacked=2</script>"""
 COMMAND = ["diagnose", "sweep", "steps", "--holdout", "held out", "--report", "found.html"]

@@ -8,7 +8,7 @@ import numpy as np
 from identify.making import own
 
 from pneumo_ros.command.console import plain
-from pneumo_ros.diagnose.compare import Comparison, RunComparison, compare
+from pneumo_ros.compare.compare import Comparison, RunComparison, compare
 from pneumo_ros.plant import Model
 from pneumo_ros.report.chart import Report
 from pneumo_ros.report.comparison import comparison_report

@@ -14,7 +14,7 @@ from report.diagnoses import COEFFICIENT, COMMAND, EXPERIMENT, diagnosed, diagno
 from report.pages import many
 from report.test_readable import CONTRASTS
 
-from pneumo_ros.diagnose.wording import number, times
+from pneumo_ros.compare.wording import number, times
 from pneumo_ros.report.chart import Chart
 from pneumo_ros.report.drawing import draw_charts
 from pneumo_ros.report.naming import change, interval, resolved

@@ -10,7 +10,7 @@ import pytest
 from report.pages import HOSTILE, compared, many, report_of, result_of
 
 from pneumo_ros.command.console import plain
-from pneumo_ros.diagnose.compare import compare
+from pneumo_ros.compare.compare import compare
 from pneumo_ros.plant import load_model
 from pneumo_ros.report.comparison import comparison_report
 from pneumo_ros.report.markup import Html, data_block, html, table, tag

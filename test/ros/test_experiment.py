@@ -13,13 +13,13 @@ from ros.probe import probe
 from ros.processes import Running, node, running
 from ros.scripted_plant import ScriptedPlant, scripted_plant, until
 
+from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.experiment.programme_file import programme_text
 from pneumo_ros.experiment.voltages import Constant
-from pneumo_ros.identify.breakaway import find_breakaways
-from pneumo_ros.identify.run import make_run
 from pneumo_ros.plant import load_model
 from pneumo_ros.records import Recording, read_recording, read_topics
+from pneumo_ros.runs.run import make_run
 
 AXIS = load_model("axis")
 TRIALS = tuple(Trial(name, Constant(volts), 2.0, 5.0, 0.5) for name, volts in (("right", 1.0), ("left", -1.0)))

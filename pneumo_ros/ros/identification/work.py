@@ -12,14 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from pneumo_ros.diagnose.moved import refit_dict
+from pneumo_ros.compare.moved import refit_dict
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.identify.campaign import identify
-from pneumo_ros.identify.refit import refit
-from pneumo_ros.identify.run import Run, make_run
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Library, Model, model_from_dict
 from pneumo_ros.records import read_recording
+from pneumo_ros.runs.run import Run, make_run
+from pneumo_ros.shooting.refit import refit
 
 NICE = 5  # whoever controls something comes first
 PARTS = (0.0, 0.2, 1.0)  # of the progress: reading, identifying

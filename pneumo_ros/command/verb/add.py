@@ -1,0 +1,96 @@
+"""Add effects to a model by name, refit it, and show the error before and after.
+
+The effects of the catalogue (pneumo effects) and of --effects are told from recordings by their names; the order does
+not matter. Model and effects are fitted to BAG... together, and judged by the recordings of --holdout, or by BAG...
+where there is none. Exit code 1 says that the recordings do not determine a parameter of what was added.
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.added import adding_dict, text, undetermined
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
+from pneumo_ros.command.console import Console, plain
+from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
+from pneumo_ros.command.reporting import add_report, prepare_report
+from pneumo_ros.command.roles import add_holdout, read_roles, roles
+from pneumo_ros.errors import UsageError
+from pneumo_ros.nearest import unknown_name
+
+if TYPE_CHECKING:
+    from pneumo_ros.diagnose.adding import Adding
+    from pneumo_ros.plant import Model
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """EFFECT... BAG..., --out, --holdout, how to read recordings, and the common options."""
+    parser.add_argument(
+        "named", nargs="+", metavar="EFFECT|BAG", help="effects to add, and recordings (or folders of them) to fit"
+    )
+    add_machine_file(parser, "write the machine file with the effects", required=True)
+    add_holdout(parser, "recordings to judge by; never fitted")
+    add_recordings(parser)
+    add_model(parser)
+    add_report(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Tell effects from recordings, read, add, print, write."""
+    from pneumo_ros.diagnose.adding import add, check_addable
+    from pneumo_ros.plant import save_model
+
+    check_machine_file(options)
+    model = chosen_model(options)
+    effects, options.bags = told_apart(options.named, model)
+    check_addable(model, effects)
+    paths = roles(options, console)
+    report = prepare_report(options)
+    train, held, passed = read_roles(*paths, options, console, model)
+    with console.progress("Adding") as progress:
+        found = add(model, effects, train, held, progress=progress)
+    result: dict[str, Any] = adding_dict(found)
+    result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
+    console.say(text(result))
+    save_model(found.model, options.out, overwrite=options.overwrite)
+    console.note(f"Machine file written to {options.out}")
+    console.json(result)
+    report.publish(console, lambda origin: _report(found, result, origin))
+    return 1 if undetermined(result) else 0
+
+
+def told_apart(named: Sequence[str], model: "Model") -> tuple[list[str], list[str]]:
+    """Effects and recordings, each in the order given: the former are known by name, the latter are there.
+
+    Raises UsageError for what is neither, and when either kind is missing.
+    """
+    known = model.library.names()
+    effects = [name for name in named if name in known]
+    bags = [name for name in named if name not in known]
+    for name in bags:
+        if not Path(name).exists():
+            raise UsageError(_neither(name, known))
+    if not effects:
+        raise UsageError("name an effect to add, such as viscous_friction; see: pneumo effects")
+    if not bags:
+        raise UsageError(f"give recordings to fit, such as: pneumo add {' '.join(effects)} BAG... --out MODEL")
+    return effects, bags
+
+
+def _neither(name: str, known: Sequence[str]) -> str:
+    """A path is told from a name by its looks."""
+    if "/" in name or Path(name).suffix:
+        return f"there is no recording {name}"
+    near = unknown_name("effect", name, known)
+    hint = near.partition("; ")[2] if "did you mean" in near else "see: pneumo effects"
+    return f"'{name}' is neither an effect nor a recording that is there; {hint}"
+
+
+def _report(found: "Adding", result: dict[str, Any], origin: dict[str, Any]) -> Any:
+    """The page of `compare` for the model with the effects."""
+    from pneumo_ros.report.comparison import comparison_report
+
+    compared = plain(found.after.as_dict() | {"refit": result["refit"], "added": result["added"]})
+    return comparison_report(compared, found.after, found.model, origin)

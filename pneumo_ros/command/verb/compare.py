@@ -1,0 +1,142 @@
+"""Compare a model with recordings: error per run and signal against the sensor noise, and the equations that fail.
+
+Each run is predicted in windows of --horizon seconds, every window from a start state estimated around its first
+sample, and once more from its first sample alone (free run). The equations are judged along the measured signals; where
+one fails, the regimes, the variables and the intervals that hold most of the error are named.
+"""
+
+import argparse
+import io
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
+from pneumo_ros.command.console import Console, columns, plain
+from pneumo_ros.command.recordings import read_runs
+from pneumo_ros.command.refitting import add_refit, refit_text, refitted
+from pneumo_ros.command.reporting import add_report, prepare_report
+from pneumo_ros.compare.findings import findings, verdict
+from pneumo_ros.compare.wording import EQUATIONS, SIGNALS, TARGETS
+from pneumo_ros.errors import UsageError
+from pneumo_ros.files import check_writable, write_whole
+
+if TYPE_CHECKING:
+    from pneumo_ros.compare.compare import Comparison, RunComparison
+    from pneumo_ros.plant import Model
+    from pneumo_ros.report.chart import Report
+
+SHOWN_RUNS = 8  # more runs than these get one line each
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """BAG..., --horizon, how to read recordings, the refit, the report and the common options."""
+    parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files")
+    parser.add_argument("--horizon", type=float, default=1.0, metavar="S", help="length of the windows (default: 1 s)")
+    add_recordings(parser)
+    add_refit(parser)
+    add_model(parser)
+    add_report(parser)
+    parser.add_argument("--series", metavar="FILE.npz", help="write what is measured and predicted as numpy arrays")
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Read, refit if asked, compare, print, write."""
+    from pneumo_ros.compare.compare import compare
+
+    if not options.horizon > 0.0:
+        raise UsageError(f"--horizon {options.horizon:g} is no length of time; give seconds, such as --horizon 1")
+    report = prepare_report(options)
+    if options.series:
+        check_writable(options.series)
+    model = chosen_model(options)
+    runs = read_runs(options.bags, options, console, model)
+    model, refit = refitted(options, console, model, runs)
+    with console.progress("Comparing") as progress:
+        comparison = compare(model, runs, options.horizon, lambda share, _: progress(share))
+    result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
+    _print(console, model, comparison, result)
+    console.json(result)
+    if options.series:
+        _write_series(comparison, options.series)
+    report.publish(console, lambda origin: _report(result, comparison, model, origin))
+    return 0
+
+
+def _write_series(comparison: "Comparison", path: str) -> None:
+    import numpy as np
+
+    from pneumo_ros.compare.arrays import comparison_arrays
+
+    packed = io.BytesIO()
+    np.savez(packed, **comparison_arrays(comparison))  # type: ignore[arg-type]  # a stub of numpy takes them for flags
+    write_whole(path, packed.getvalue())
+
+
+def _report(result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]) -> "Report":
+    from pneumo_ros.report.comparison import comparison_report
+
+    return comparison_report(result, comparison, model, origin)
+
+
+def _print(console: Console, model: "Model", comparison: "Comparison", result: dict[str, Any]) -> None:
+    if "refit" in result:
+        console.say(refit_text(result["refit"]) + "\n")
+    for caution in model.cautions():
+        console.note(f"Note: {caution}")
+    if len(comparison.runs) <= SHOWN_RUNS:
+        for one in comparison.runs:
+            console.say(run_text(one, comparison.horizon) + "\n")
+    else:
+        console.say(runs_text(comparison) + "\n")
+    console.say(equations_text(comparison))
+    console.say("\n" + findings_text(result))
+
+
+def run_text(run: "RunComparison", horizon: float) -> str:
+    """Table of one run."""
+    head = ("", f"rms over {horizon:g} s", "largest", "noise", "rms / noise", "fit", "free run rms")
+    rows = [head]
+    for name, error in run.error.items():
+        words, unit, factor = SIGNALS[name]
+        rms, worst, noise, free = (
+            f"{factor * x:.4g} {unit}" for x in (error.rms, error.max, error.noise, run.free[name])
+        )
+        rows.append((words, rms, worst, noise, f"{error.ratio:.1f}", f"{error.fit_percent:.1f} %", free))
+    title = f"{run.name}: {run.duration:.1f} s, {run.samples} samples, {run.windows} windows"
+    return title + "\n" + columns(rows, right=(1, 2, 3, 4, 5, 6))
+
+
+def runs_text(comparison: "Comparison") -> str:
+    """Many runs, one line each: errors over noise."""
+    signals, equations = list(comparison.runs[0].error), list(comparison.equations)
+    rows = [("rms / noise", "duration", *(TARGETS[name][0] for name in (*signals, *equations)))]
+    for one in comparison.runs:
+        ratios = [one.error[name].ratio for name in signals]
+        ratios += [one.equations[name].ratio_to_noise for name in equations]
+        rows.append((one.name, f"{one.duration:.1f} s", *(f"{ratio:.1f}" for ratio in ratios)))
+    title = f"{len(comparison.runs)} runs, windows of {comparison.horizon:g} s:"
+    return title + "\n" + columns(rows, right=range(1, len(rows[0])))
+
+
+def equations_text(comparison: "Comparison") -> str:
+    """One line per equation: its residual along the measured signals, and whether noise explains it."""
+    rows = []
+    for name, judged in comparison.equations.items():
+        if judged.explained_by_noise is None:
+            rows.append((EQUATIONS[name][0], "-", "-", "not judged: nothing slides in these recordings"))
+            continue
+        said = "explained by noise" if judged.explained_by_noise else "FAILS: noise does not explain it"
+        sizes = (f"{judged.residual_rms:.3g} {judged.unit}", f"{judged.ratio_to_noise:.1f} x noise")
+        rows.append((EQUATIONS[name][0], *sizes, said))
+    title = f"Equations of '{comparison.model}', residual along the measured signals:"
+    return title + "\n" + columns(rows, right=(1, 2))
+
+
+def findings_text(result: dict[str, Any]) -> str:
+    """Where it fails: a line for each equation and signal that noise does not explain, and what can be said of it."""
+    lines = [verdict(result)]
+    for finding in findings(result):
+        if finding.level != "good":
+            lines.append(f"  {TARGETS[finding.target][0]} {finding.verdict}")
+            lines += [f"    {detail}" for detail in finding.details]
+    return "\n".join(lines)

@@ -1,0 +1,122 @@
+"""Find which effect a model is missing, on what evidence; add it, refit, and write the improved machine file.
+
+The model is refitted to BAG..., every effect at hand is tried on what remains, and what the runs of --holdout support,
+which are never fitted, is added; then again, until nothing pays. The held-out error before and after, the parameters
+with their intervals, the effects that explain as much, and what nothing explains are printed; and where effects cannot
+be told apart, the experiment that would. BAG may be a folder of recordings; what --holdout names is taken out of it.
+
+Ctrl-C ends the search: what was found by then is printed and written, with exit code 130. Exit code 1 says that
+something is missing which no effect at hand explains.
+"""
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
+from pneumo_ros.command.console import Console, plain
+from pneumo_ros.command.diagnosed import text
+from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
+from pneumo_ros.command.patience import finishing
+from pneumo_ros.command.reporting import add_report, prepare_report
+from pneumo_ros.command.roles import add_holdout, read_roles, require_holdout, roles
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pneumo_ros.diagnose.outcome import Outcome
+    from pneumo_ros.plant import Model
+    from pneumo_ros.runs.run import Run
+    from pneumo_ros.shooting.refit import Estimate
+
+INTERRUPTED = 130
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """BAG..., --holdout, --out, how to read recordings, and the common options."""
+    parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings to fit, or folders of recordings")
+    add_holdout(parser, "recordings to judge by; never fitted")
+    add_machine_file(parser, "write the improved machine file")
+    add_recordings(parser)
+    add_model(parser)
+    add_report(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace, console: Console) -> int:
+    """Read, diagnose, print, write."""
+    from pneumo_ros.command.diagnosis_json import diagnosis_dict
+    from pneumo_ros.command.suggesting import suggested
+    from pneumo_ros.plant import save_model
+
+    check_machine_file(options)
+    require_holdout(options, "diagnose", console)
+    paths = roles(options, console)
+    report = prepare_report(options)
+    model = chosen_model(options)
+    for name in untried(model):
+        console.note(f"{name} is not tried: none of its parameters says where it adds nothing (neutral=0.0)")
+    train, held, passed = read_roles(*paths, options, console, model)
+    outcome, estimates = diagnosed(model, train, held, console)
+    experiment = suggested(outcome, options.out or options.model, console)
+    result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
+    result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
+    console.say(text(result))
+    if options.out:
+        save_model(outcome.model, options.out, overwrite=options.overwrite)
+        console.note(f"{_what(outcome)} written to {options.out}; see also: {_next(options)}")
+    console.json(result)
+    report.publish(console, lambda origin: _report(outcome, result, origin))
+    if outcome.interrupted:
+        return INTERRUPTED
+    return 1 if outcome.verdict == "unknown_effect" else 0
+
+
+def untried(model: "Model") -> list[str]:
+    """Effects that are not of the catalogue and cannot be faded in."""
+    from pneumo_ros.diagnose.coordinates import coordinates
+    from pneumo_ros.plant.library import Library
+
+    library = model.library
+    own = sorted({*library.names()} - {*Library().names(), *model.effects})
+    return [name for name in own if not coordinates(library.find(name))]
+
+
+def diagnosed(
+    model: "Model", train: "Sequence[Run]", held: "Sequence[Run]", console: Console
+) -> "tuple[Outcome, dict[str, Estimate]]":
+    """The diagnosis, and what is known of every parameter after it; Ctrl-C ends the search but not its evaluation."""
+    from pneumo_ros.diagnose.adding import estimates_along
+    from pneumo_ros.diagnose.diagnosis import conclude
+    from pneumo_ros.diagnose.search import Search
+
+    again = "finishing what was found; Ctrl-C again stops at once"
+    with console.progress("Diagnosing") as progress:
+
+        def interrupted() -> None:
+            progress.clear()
+            console.note(f"Interrupted: {again}")
+
+        search = Search(model, train, held, lambda share, doing: progress(0.8 * share, doing))
+        found = search.run()
+        if found.interrupted:
+            interrupted()
+        with finishing(interrupted):
+            return conclude(search, found, progress), estimates_along(search.fitter, found.model)
+
+
+def _what(outcome: "Outcome") -> str:
+    if outcome.added:
+        return f"Machine with {' and '.join(one.effect for one in outcome.added)}"
+    return "Refitted machine, without any effect added,"
+
+
+def _next(options: argparse.Namespace) -> str:
+    bags = " ".join(options.holdout[:2] + ["..."] * (len(options.holdout) > 2))
+    effects = "".join(f" --effects {path}" for path in options.effects)
+    return f"pneumo compare {bags} --model {options.out}{effects}"
+
+
+def _report(outcome: "Outcome", result: dict[str, Any], origin: dict[str, Any]) -> Any:
+    from pneumo_ros.report.diagnosis import diagnosis_report
+
+    return diagnosis_report(outcome, result, plain(outcome.after.as_dict()), origin, result["suggested_experiment"])

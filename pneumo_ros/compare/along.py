@@ -1,0 +1,44 @@
+"""The model along the measured motion: what its equations claim, sample by sample, where a recording says the rest."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.runs.sensors import driven
+from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
+
+Array = NDArray[np.float64]
+
+_SLOWEST = 1e-3  # m/s: slower counts as rest however good the sensor is
+_DEVIATIONS = 4.0  # of the estimated velocity: below, motion cannot be told from noise
+
+
+@dataclass(frozen=True)
+class Along:
+    """One run with the model's claims beside it; arrays (n,) on the run's grid, SI units."""
+
+    run: Run
+    velocity: Array  # local polynomials over +-12 ms
+    rest_below: float  # m/s: slower cannot be told from rest
+    input: Array  # V, or N when force-driven: in force from each sample on
+    seen: dict[str, Array]  # what `Model.outputs` shows along the measured states
+    reach: float  # m, half the stroke
+
+
+def along(model: Model, run: Run) -> Along:
+    """Drive the model's own states (bristles, spool) along the measured ones and look at its signals."""
+    frame = run.smoothed.frame[:, : 2 if model.force_driven else 4]
+    states, _ = driven(model, frame, run)
+    held = np.append(run.held, run.held[-1])
+    spread = run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
+    return Along(
+        run=run,
+        velocity=states[:, 1],
+        rest_below=max(_SLOWEST, _DEVIATIONS * spread),
+        input=held,
+        seen=model.outputs(states, held, sample_time=run.sample_time),
+        reach=0.5 * model["piston.stroke"],
+    )

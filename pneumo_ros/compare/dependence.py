@@ -1,0 +1,89 @@
+"""Residual of an equation against what it may depend on: binned means with band and coverage, over all runs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.compare.along import Along
+from pneumo_ros.compare.binned import Bins, bin_means, clusters, edges, explained
+from pneumo_ros.compare.shares import window_share
+from pneumo_ros.equations.weak import Residual
+
+Array = NDArray[np.float64]
+
+BINS = 40  # a detent of short pitch shows in 40 and hides in 8
+_FEWEST = 8  # windows in a bin: they overlap, so this is two independent ones
+UNITS = {
+    "velocity": "m/s", "position": "m", "voltage": "V", "force": "N", "pressure_a": "Pa", "pressure_b": "Pa",
+    "pressure_difference": "Pa", "time": "s",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """Residual over bins of one variable: means with 95 % intervals, what noise alone gives, seconds of coverage."""
+
+    variable: str
+    bins: Bins
+    noise: Array  # (bins,) rms of the noise of single windows, in the residual's unit
+    seconds: Array  # (bins,)
+    constant_share: float  # of the squared residual: what one constant explains
+    explained_share: float  # what this variable explains beyond the constant, predicted for windows left out
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON: columns over the bins."""
+        return {
+            "unit": UNITS[self.variable],
+            "constant_share": self.constant_share,
+            "explained_share": self.explained_share,
+            "from": self.bins.low, "to": self.bins.high, "at": self.bins.centre, "mean": self.bins.mean,
+            "low": self.bins.below, "high": self.bins.above, "noise": self.noise, "seconds": self.seconds,
+        }  # fmt: skip
+
+
+def dependences(residuals: Sequence[Residual], courses: Sequence[Along], width: float) -> dict[str, Dependence]:
+    """One equation's residuals of several runs, each over windows of `width` [s], against every variable they have."""
+    parts = [_variables(residual, course, width) for residual, course in zip(residuals, courses, strict=True)]
+    names = [name for name in UNITS if all(name in part for part in parts)]
+    value, noise, time = (
+        np.concatenate([getattr(r, which) for r in residuals]) for which in ("value", "noise", "time")
+    )
+    if len(value) < 2 * _FEWEST:
+        return {}
+    run = np.repeat(np.arange(len(residuals)), [len(r.value) for r in residuals])
+    cluster, hop = clusters(time, run), _hop(residuals)
+    return {
+        name: _against(name, np.concatenate([part[name] for part in parts]), value, noise, cluster, hop)
+        for name in names
+    }
+
+
+def _against(
+    name: str, variable: Array, value: Array, noise: Array, cluster: NDArray[np.int64], hop: float
+) -> Dependence:
+    at = edges(variable, BINS)
+    bins = bin_means(variable, value, cluster, at, _FEWEST)
+    level = np.array([np.sqrt(np.mean(np.square(noise[inside]))) for inside in bins.members])
+    constant, beyond = explained(variable, value, cluster, at)
+    return Dependence(name, bins, level, bins.count * hop, constant, beyond)
+
+
+def _hop(residuals: Sequence[Residual]) -> float:
+    """Time from one window to the next [s]."""
+    steps = [np.min(np.diff(r.time)) for r in residuals if len(r.time) > 1]
+    return float(np.median(steps)) if steps else 0.0
+
+
+def _variables(residual: Residual, course: Along, width: float) -> dict[str, Array]:
+    """Means of each variable over the residual's windows."""
+    run = course.run
+    signals = {"velocity": course.velocity, "position": run.position}
+    signals["force" if run.force_driven else "voltage"] = course.input
+    if run.pressure_a is not None and run.pressure_b is not None and not run.force_driven:
+        signals |= {"pressure_a": run.pressure_a, "pressure_b": run.pressure_b}
+        signals["pressure_difference"] = run.pressure_a - run.pressure_b
+    means = {name: window_share(s, run.sample_time, residual.time, width) for name, s in signals.items()}
+    return means | {"time": residual.time}

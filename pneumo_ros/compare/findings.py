@@ -1,0 +1,121 @@
+"""Where a model fails, in sentences: from the JSON of `compare`, for the terminal and for the report."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, VARIABLES, amount, percent, times
+
+Level = Literal["good", "bad", "open"]
+
+_FOLLOWS = 0.1  # share of the squared residual from which on a variable or a constant is worth naming
+_TIED = 0.8  # of the best share: variables this close cannot be told apart here
+_OFTEN = 0.1  # share of the error from which on a regime is worth naming
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One sentence on an equation or a signal, and whether it is good news, bad news or left open."""
+
+    target: str
+    level: Level
+    verdict: str
+    details: tuple[str, ...] = ()
+
+
+def findings(result: Mapping[str, Any]) -> list[Finding]:
+    """One finding for every equation and signal: verdict first, then where and when."""
+    equations = [_equation(result, name) for name in result["equations"]]
+    return equations + [_signal(result, name) for name in result["signals"]]
+
+
+def verdict(result: Mapping[str, Any]) -> str:
+    """The whole comparison in one sentence."""
+    same = set(result.get("refit", {}).get("runs", ())) & {run["name"] for run in result["runs"]}
+    caution = " The model was refitted to recordings that it is scored on." if same else ""
+    failing = [n for n, e in result["equations"].items() if e["explained_by_noise"] is False]
+    worst = max((s["ratio_to_noise"] or 0.0 for s in result["signals"].values()), default=0.0)
+    runs = f"{len(result['runs'])} recording" + ("s" if len(result["runs"]) != 1 else "")
+    if not failing:
+        return (
+            f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge.{caution}"
+        )
+    *others, last = (_words(name) for name in failing)
+    names = f"{', '.join(others)} and {last}" if others else last
+    verb = "fails" if len(failing) == 1 else "fail"
+    size = f"predictions are up to {times(worst)} the sensor noise off"
+    return f"'{result['model']}' against {runs}: {names} {verb}; {size}.{caution}"
+
+
+def _equation(result: Mapping[str, Any], name: str) -> Finding:
+    found = result["equations"][name]
+    if found["explained_by_noise"] is None:
+        return Finding(
+            name, "open", "is not judged: the piston never slides" if name == "momentum" else "is not judged"
+        )
+    size = f"{amount(found['residual_rms'], name)}, {times(found['ratio_to_noise'])} noise"
+    if found["explained_by_noise"]:
+        return Finding(name, "good", f"is explained by noise ({size})")
+    details = (*_where(name, found), *_follows(found), *_when(result, name))
+    return Finding(name, "bad", f"fails: {size}", details)
+
+
+def _signal(result: Mapping[str, Any], name: str) -> Finding:
+    found = result["signals"][name]
+    size = f"{amount(found['rms'], name)} over {result['horizon_s']:g} s, {times(found['ratio_to_noise'])} noise"
+    if found["explained_by_noise"]:
+        return Finding(name, "good", f"is explained by noise ({size})")
+    return Finding(name, "bad", f"is off by {size}", (*_where(name, found), *_when(result, name)))
+
+
+def _where(name: str, found: Mapping[str, Any]) -> Iterator[str]:
+    """The regimes in which the error is concentrated: their share of it against their share of the time.
+
+    What fills chamber a empties chamber b: the flows of one chamber are named, its own where the target has one.
+    """
+    other = ("filling_a", "exhausting_a") if "_b" in name else ("filling_b", "exhausting_b")
+    shares = {n: s for n, s in found["regimes"].items() if s["share"] >= _OFTEN and n in REGIMES and n not in other}
+    dense = sorted(shares, key=lambda n: -shares[n]["share"] * shares[n]["share"] / shares[n]["time_share"])
+    told = [n for n in dense if shares[n]["share"] > 1.2 * shares[n]["time_share"]][:2]
+    if told:
+        parts = (
+            f"{percent(shares[n]['share'])} in '{REGIMES[n]}' ({percent(shares[n]['time_share'])} of the time)"
+            for n in told
+        )
+        yield "where: " + ", ".join(parts)
+    else:
+        yield "where: everywhere alike"
+
+
+def _concentration(regime: str, share: Mapping[str, Any]) -> str:
+    return f"{percent(share['share'])} in '{REGIMES[regime]}' ({percent(share['time_share'])} of the time)"
+
+
+def _follows(found: Mapping[str, Any]) -> Iterator[str]:
+    """What the residual depends on."""
+    against = found["against"]
+    shares = {n: a["explained_share"] for n, a in against.items()}
+    best = max(shares.values(), default=0.0)
+    constant = max((a["constant_share"] for a in against.values()), default=0.0)
+    parts = [f"a constant ({percent(constant)})"] if constant >= _FOLLOWS else []
+    if best >= _FOLLOWS:
+        near = sorted((n for n in shares if shares[n] >= _TIED * best), key=lambda n: -shares[n])[:3]
+        parts.append(" or ".join(f"{VARIABLES[n][0]} ({percent(shares[n])})" for n in near))
+    if parts:
+        yield "follows: " + ", then ".join(parts)
+    elif against:
+        yield "follows: none of velocity, position, voltage, pressures, time"
+
+
+def _when(result: Mapping[str, Any], name: str) -> Iterator[str]:
+    """The worst intervals over all runs."""
+    kind = "error" if name in SIGNALS else "equations"
+    every = [(run["name"], interval) for run in result["runs"] for interval in run[kind][name]["worst"]]
+    every.sort(key=lambda pair: -pair[1]["ratio_to_noise"])
+    parts = [f"{run} {w['start_s']:.1f}-{w['end_s']:.1f} s ({times(w['ratio_to_noise'])})" for run, w in every[:2]]
+    if parts:
+        yield "worst: " + ", ".join(parts)
+
+
+def _words(name: str) -> str:
+    return {**SIGNALS, **EQUATIONS}[name][0]

@@ -1,0 +1,107 @@
+"""Regimes of a motion, as masks on the grid of a run: from the measured signals and the model's parameters alone.
+
+A sample may be in several regimes. Stick and slide part the time between them; the others do not.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.compare.along import Along
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+SHORTEST_REST = 0.02  # s: a shorter stop is a velocity passing through zero
+REVERSAL = 0.05  # s before and after the change of direction
+LONGEST_STOP = 0.2  # s: after a longer one the piston has rested, and leaves by a breakaway
+BREAKAWAY = (0.02, 0.1)  # s before and after a rest ends
+NEAR_STOP = 0.02  # of the stroke
+NEAR_NULL = 0.1  # V of opening beyond the dead zone
+NO_FLOW = 0.02  # of the run's largest flow
+
+MEANING = {
+    "stick": "the piston rests: its velocity cannot be told from zero for 20 ms or longer",
+    "breakaway": "from 20 ms before to 100 ms after a rest ends",
+    "slide": "the piston moves: all that is not stick",
+    "reversal": "50 ms around a change of direction with less than 0.2 s of rest in it",
+    "near_end_stop": "within 2 % of the stroke from either end",
+    "filling_a": "the model's valve lets more than 2 % of its largest flow into chamber a",
+    "exhausting_a": "the model's valve lets more than 2 % of its largest flow out of chamber a",
+    "filling_b": "the model's valve lets more than 2 % of its largest flow into chamber b",
+    "exhausting_b": "the model's valve lets more than 2 % of its largest flow out of chamber b",
+    "valve_near_null": "the valve is inside its dead zone or opened by less than 0.1 V beyond",
+}
+
+
+def regimes(course: Along) -> dict[str, Mask]:
+    """Masks (n,) by name, in the order of `MEANING`; those of valve and chambers only where the model has them."""
+    rest = _rest(course)
+    masks = {
+        "stick": rest,
+        "breakaway": _breakaway(course, rest),
+        "slide": ~rest,
+        "reversal": _reversal(course),
+        "near_end_stop": np.abs(course.run.position) > course.reach * (1.0 - 2.0 * NEAR_STOP),
+    }
+    for chamber in ("a", "b"):
+        if f"port_flow_{chamber}" in course.seen:
+            flow = course.seen[f"port_flow_{chamber}"]
+            limit = NO_FLOW * float(np.max(np.abs(flow), initial=0.0))
+            masks[f"filling_{chamber}"], masks[f"exhausting_{chamber}"] = flow > limit, flow < -limit
+    if "opening" in course.seen:
+        masks["valve_near_null"] = np.abs(course.seen["opening"]) <= NEAR_NULL
+    return masks
+
+
+def _rest(course: Along) -> Mask:
+    """Slow for long enough."""
+    slow = np.abs(course.velocity) < course.rest_below
+    begin, end = stretches(slow)
+    result = np.zeros(len(slow), dtype=bool)
+    for b, e in zip(begin, end, strict=True):
+        result[b:e] = (e - b) * course.run.sample_time >= SHORTEST_REST
+    return result
+
+
+def _breakaway(course: Along, rest: Mask) -> Mask:
+    before, after = (round(span / course.run.sample_time) for span in BREAKAWAY)
+    _, end = stretches(rest)
+    return _around(len(rest), end[end < len(rest)], before, after)
+
+
+def _reversal(course: Along) -> Mask:
+    """Around pairs of neighbouring sliding samples with opposite directions."""
+    direction = _direction(course)
+    sliding = np.flatnonzero(direction)
+    turns = np.flatnonzero(direction[sliding[1:]] != direction[sliding[:-1]])
+    begin, end = sliding[turns], sliding[turns + 1]
+    short = (end - begin) * course.run.sample_time <= LONGEST_STOP
+    reach = round(REVERSAL / course.run.sample_time)
+    result = np.zeros(len(direction), dtype=bool)
+    for b, e in zip(begin[short], end[short], strict=True):
+        result[max(b - reach, 0) : e + reach] = True
+    return result
+
+
+def _direction(course: Along) -> Array:
+    """1, -1 or 0; a way that is kept for less than 20 ms is what a filter makes of a sudden stop."""
+    result = np.zeros(len(course.velocity))
+    for sign in (1.0, -1.0):
+        begin, end = stretches(sign * course.velocity >= course.rest_below)
+        for b, e in zip(begin, end, strict=True):
+            if (e - b) * course.run.sample_time >= SHORTEST_REST:
+                result[b:e] = sign
+    return result
+
+
+def _around(samples: int, at: NDArray[np.int64], before: int, after: int) -> Mask:
+    result = np.zeros(samples, dtype=bool)
+    for k in at:
+        result[max(k - before, 0) : k + after] = True
+    return result
+
+
+def stretches(mask: Mask) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where the true stretches of a mask (n,) begin, and where they end (exclusive)."""
+    edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
+    return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)

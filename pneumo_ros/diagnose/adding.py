@@ -1,0 +1,135 @@
+"""Effects added by name: what the model has and what is new, fitted to recordings together.
+
+First along the measured signals, where candidates start from several shapes and sizes; then by multiple shooting
+(`polishing`), which alone determines when the piston breaks away.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pneumo_ros.compare.compare import Comparison, compare
+from pneumo_ros.diagnose.coordinates import coordinates, starts
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.polishing import Progress, polish
+from pneumo_ros.diagnose.prediction import HORIZON, typical_error, windowed
+from pneumo_ros.diagnose.refining import refine
+from pneumo_ros.diagnose.timing import EFFECT, lateness, later
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.refit import Estimate, default_free
+
+ROUGHLY = 40  # enough for the model without the effects, whose fit is slow and is not kept
+
+
+@dataclass(frozen=True)
+class Adding:
+    """What adding effects brought: refitted without and with them, and how both predict the runs judged by."""
+
+    effects: tuple[str, ...]
+    base: Model
+    model: Model
+    estimates: dict[str, Estimate]  # of all free parameters of `model`, by dotted name
+    before: Comparison = field(repr=False)
+    after: Comparison = field(repr=False)
+    given: Comparison = field(repr=False)  # the model as it was given
+    errors: tuple[float, float, float]  # typical error over the noise floor: as given, refitted, with the effects
+    train: tuple[str, ...] = ()
+    judged: tuple[str, ...] = ()
+    late: float = 0.0  # s, by which a measured force was put off, as positions come after it
+
+    @property
+    def held_out(self) -> bool:
+        """Whether the runs judged by took no part in the fit."""
+        return not set(self.train) & set(self.judged)
+
+
+def add(
+    model: Model,
+    effects: Sequence[str],
+    train: Sequence[Run],
+    held: Sequence[Run] = (),
+    *,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Adding:
+    """Add `effects` to `model`, refit all that may move to `train`, and predict `held`, or `train` where it is empty.
+
+    Raises UsageError for no run, no effect, an unknown one, and one that the model has or that does not fit beside
+    its others; DataError when a run does not fit the model.
+    """
+    check_addable(model, effects)
+    if not train:
+        raise UsageError("effects are fitted to recordings; give at least one")
+    tell = progress or (lambda share, text: None)
+    tell(0.0, "refitting what the model has")
+    late = lateness(model, train) if EFFECT not in effects else 0.0
+    train, held = ([later(run, late) for run in runs] for runs in (train, held))
+    fading = [name for name in effects if coordinates(model.library.find(name))]
+    fitter = Fitter(model, train, candidates=fading)
+    base = larger = fitter.refit(model)
+    if len(fading) < len(effects):
+        plain = [name for name in effects if name not in fading]
+        fitter = Fitter(model.with_effects([*model.effects, *plain]), train, candidates=fading)
+        larger = fitter.refit(fitter.start)
+    for k, name in enumerate(fading):
+        tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
+        larger = _with(fitter, larger, name)
+    base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
+    found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
+    judged, compared, errors = held or train, list[Comparison](), list[float]()
+    for k, one in enumerate((model, base, found.model)):
+        tell(0.85 + 0.05 * k, "predicting the recordings")
+        compared.append(compare(one, judged, HORIZON))
+        errors.append(typical_error(windowed(one, judged)))
+    return Adding(
+        tuple(effects), base, found.model, found.estimates, compared[1], compared[2], compared[0],
+        (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged), late,
+    )  # fmt: skip
+
+
+def check_addable(model: Model, effects: Sequence[str]) -> None:
+    """UsageError for effects that cannot be added to `model`."""
+    if not effects:
+        raise UsageError("name an effect to add; see: pneumo effects")
+    for name in effects:
+        model.library.find(name)
+        if name in model.effects:
+            raise UsageError(f"{name} is in '{model.name}' already; pneumo compare --refit fits what a model has")
+        if list(effects).count(name) > 1:
+            raise UsageError(f"{name} is named twice")
+    larger = model.with_effects([*model.effects, *effects])
+    for name in effects:
+        if not coordinates(model.library.find(name)) and any(n.startswith(f"{name}.") for n in default_free(larger)):
+            raise UsageError(
+                f"{name} cannot be fitted: none of its parameters says where it adds nothing, as "
+                "Parameter(..., neutral=0.0) does; put it into the machine file instead"
+            )
+
+
+def _with(fitter: Fitter, model: Model, name: str) -> Model:
+    """The model with one more effect, fitted along the signals from the best of several shapes."""
+    fit = fitter.fit(model)
+    own = coordinates(model.library.find(name))
+    begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
+    best = max(refine(fit, begin), key=lambda h: h.likelihood)
+    return fitter.refit(fitter.extended(model, best))
+
+
+def _part(tell: Progress, first: float, last: float, what: str) -> Progress:
+    return lambda share, _: tell(first + (last - first) * share, f"refitting {what} what is added, by prediction")
+
+
+def estimates_along(fitter: Fitter, model: Model) -> dict[str, Estimate]:
+    """Estimates of what is free in a model that `fitter` fitted, against what was known before."""
+    known = fitter.known(model)
+    spread = fitter.deviations(model)
+    each = zip(known.names, known.centre.tolist(), known.prior.tolist(), strict=True)
+    return {n: _estimate(model[n], spread[n], centre, prior) for n, centre, prior in each}
+
+
+def _estimate(value: float, spread: float, before: float, prior: float) -> Estimate:
+    return Estimate(value, spread, value - 1.96 * spread, value + 1.96 * spread, before, prior)

@@ -1,0 +1,177 @@
+"""Along the measured motion: the states a model claims, with what the sensors do to them taken back."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.equations.breakaway import REST
+from pneumo_ros.equations.equations import centred
+from pneumo_ros.equations.guess import measured_frame
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.compose import SENSED
+from pneumo_ros.plant.effect import Effect
+from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.runs.sensors import shifted, taken_back
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
+QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
+SHORT = 1.01e-3  # s: a sample as short is one part where candidates are ranked, which errs by a hundredth of an effect
+_SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
+_SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a run says of the frame's states: measured ones with smoothed velocity (n, 2 or 4)."""
+
+    run: Run
+    states: Array
+
+
+def frame_of(run: Run, force_driven: bool) -> Frame:
+    """Measured position, smoothed velocity and measured pressures; a piston at rest has exactly no velocity."""
+    states = measured_frame(run, force_driven)
+    states[resting(run), 1] = 0.0
+    return Frame(run, states)
+
+
+def resting(run: Run) -> NDArray[np.bool_]:
+    """Samples (n,) within stretches of 0.15 s or more in which the position stays within its noise."""
+    width = max(round(REST / run.sample_time), 2)
+    slip = _SLIP * run.noise["position_m"]
+    still = np.zeros(len(run), dtype=bool)
+    if len(run) < width:
+        return still
+    every = np.lib.stride_tricks.sliding_window_view(run.position, width)
+    quiet = np.flatnonzero(every.max(axis=1) - every.min(axis=1) < 2.0 * slip)
+    marks = np.zeros(len(run) + 1)
+    np.add.at(marks, quiet, 1.0)
+    np.add.at(marks, quiet + width, -1.0)
+    return np.asarray(np.cumsum(marks)[:-1] > 0.0)
+
+
+def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
+    """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
+    states, mean = _drive(model, frame.run, frame.states, _held(frame.run, QUICK))
+    return states, centred(mean)
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What one parameter vector makes of a run: its index, states (n, states), claimed derivatives of v, p_a, p_b.
+
+    `as_measured`: whether the frame's states are the measured ones.
+    """
+
+    index: int
+    states: Array
+    claimed: Array
+    as_measured: bool
+
+
+def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
+    """What each parameter vector makes of a run, in any order.
+
+    Where the vector makes sensors differ from the states, the measured states are first corrected for what it claims
+    the sensors do: x = measured - (observed(x) - x), twice. `ranking`: as exact as ranking candidates asks for.
+    """
+    parts = 1 if ranking and frame.run.sample_time < SHORT else QUICK
+    corrects = sensing(model, parameters)
+    for drive, own in ((_as_measured, np.flatnonzero(~corrects)), (_corrected, np.flatnonzero(corrects))):
+        for rows in (own[k : k + BLOCK] for k in range(0, len(own), BLOCK)):
+            states, mean = drive(model, frame, parameters[rows], parts)
+            for k, x, m in zip(rows, states, mean, strict=True):
+                yield Followed(int(k), x, centred(m), drive is _as_measured)
+
+
+def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
+    return _drive_lanes(model, frame.run, frame.states, parameters, parts)
+
+
+def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
+    """Lanes driven along the measured states less what sensors do: those with the same sensors along the same."""
+    first, group = alike_sensors(model, parameters)
+    given, own_states, own_mean = _without_sensors(model, frame, parameters[first], parts)
+    states, mean = own_states[group], own_mean[group]
+    for k, lane in enumerate(first):
+        others = np.setdiff1d(np.flatnonzero(group == k), lane)
+        if len(others):
+            states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others], parts)
+    return states, mean
+
+
+def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array, Array]:
+    """Frame states without what sensors do (lanes, n, 2 or 4), and the lanes driven along them.
+
+    By a fixed point of two steps at most. Each lane stops by itself: what it gives does not depend on those beside it.
+    """
+    states, mean = _as_measured(model, frame, parameters, parts)
+    given = np.repeat(frame.states[None], len(states), axis=0)
+    moving, before = np.arange(len(states)), np.zeros((len(states), 1, 1))
+    for _ in range(2):
+        shift = taken_back(model, states[moving], parameters[moving], frame.run)
+        still = np.any(np.abs(shift - before).max(axis=1) > _SETTLED[: shift.shape[-1]], axis=1)
+        moving, before = moving[still], shift[still]
+        if not len(moving):
+            break
+        given[moving] = [shifted(frame.states, own, frame.run.sample_time) for own in before]
+        states[moving], mean[moving] = _drive_lanes(model, frame.run, given[moving], parameters[moving], parts)
+    return given, states, mean
+
+
+def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
+    step = 1.01 * run.sample_time / parts
+    rest = model.state()[given.shape[-1] :]
+    columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
+    held = _held(run, parts)
+    return model.follow_lanes(
+        given, held, rest, parameters, sample_time=run.sample_time, parts=parts, step=step, columns=columns
+    )
+
+
+def _held(run: Run, parts: int) -> Array:
+    """The input over parts of a sample."""
+    return np.asarray(run.input.reshape(-1, parts, PARTS // parts).mean(axis=2).ravel())
+
+
+def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:
+    step = 1.01 * run.sample_time / QUICK
+    rest = model.state()[given.shape[1] :]
+    return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
+
+
+def reads_wrong(effect: type[Effect]) -> bool:
+    """Whether an effect makes sensors show something else than a state."""
+    return any(signal in SENSED for function in effect.functions.values() for signal in function.writes)
+
+
+def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
+    """Parameter vectors (variants, parameters) in groups whose sensors do the same: the first of each, and the group.
+
+    Sensors that read more than the frame's states and what is their own may do something else in every lane.
+    """
+    frame = {"y", "v", "p_a", "p_b", *SENSED}
+    columns: list[int] = []
+    for effect in filter(reads_wrong, model.composition.effects):
+        reads = {name for function in effect.functions.values() for name in function.reads}
+        if not reads <= frame | set(effect.states) | set(effect.parameters):
+            return np.arange(len(parameters)), np.arange(len(parameters))
+        columns += [k for k, name in enumerate(model.parameters) if name.partition(".")[0] == effect.name]
+    _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
+    return first, np.ravel(group)
+
+
+def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
+    """Which parameter vectors (variants, parameters) make any sensor of the model show something else than a state."""
+    found = np.zeros(len(parameters), dtype=bool)
+    names = list(model.parameters)
+    for effect in filter(reads_wrong, model.composition.effects):
+        fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
+        acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
+        found |= np.any(acts, axis=0) if acts else True
+    return found

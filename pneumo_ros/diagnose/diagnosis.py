@@ -1,0 +1,193 @@
+"""`diagnose`: the search, judged on held-out runs, as one outcome."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.compare.compare import Comparison, EquationVerdict, compare
+from pneumo_ros.diagnose.between import moved_between
+from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
+from pneumo_ros.diagnose.prediction import HORIZON, typical_error
+from pneumo_ros.diagnose.search import Progress, Search
+from pneumo_ros.diagnose.steps import Found, Step
+from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+
+Array = NDArray[np.float64]
+
+SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
+MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
+LARGE = 0.05  # of the force that drives the piston, or of the flow: no law's shape is that far off
+REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
+RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
+
+
+def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None) -> Outcome:
+    """Which effects `model` lacks: refit, rank on `train`, confirm on `held`, add, repeat.
+
+    Both are sequences of runs of one machine, `held` is never fitted. Raises UsageError when either is empty,
+    DataError when a run does not fit the model.
+    """
+    if not train or not held:
+        raise UsageError(
+            "a diagnosis needs recordings to fit and others to judge by; give both, the latter by --holdout"
+        )
+    tell = progress or (lambda share, text: None)
+    search = Search(model, train, held, lambda share, text: tell(0.8 * share, text))
+    return conclude(search, search.run(), tell)
+
+
+def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
+    """Judge what a search found by one-second windows of the held-out runs."""
+    held = search.held.runs
+    models = [search.start, found.base, *(step.model for step in found.steps[1:])]
+    if models[-1].effects != found.model.effects:
+        models.append(found.model)
+    models[-1] = found.model
+    course, comparisons = [], {}
+    for k, model in enumerate(models):
+        tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
+        course.append((_label(models, k), typical_error(search.predicted(model))))
+        if k in (1, len(models) - 1):
+            comparisons[k] = compare(model, held, HORIZON)
+    values = search.fitter.deviations(found.model)
+    added = tuple(
+        _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
+        for k, step in enumerate(found.steps)
+        if step.added
+    )
+    before, after = comparisons[1], comparisons[len(models) - 1]
+    unexplained = remains(before, after)
+    if unexplained is not None and unexplained.material:
+        unexplained = replace(unexplained, moved=moved_between(search.fitter, found.model, unexplained.equation))
+    return Outcome(
+        verdict=verdict(added, unexplained),
+        failing=failing(before, added, found.base),
+        base=found.base,
+        model=found.model,
+        added=added,
+        ranking=tuple(_ranked(trial) for trial in _latest(found.steps)),
+        steps=found.steps,
+        before=before,
+        after=after,
+        errors={
+            "before": signal_errors(before), "after": signal_errors(after), "noise": noise_levels(after),
+        },
+        course=tuple(course),
+        unexplained=unexplained,
+        interrupted=found.interrupted,
+        train=tuple(run.name for run in search.train.runs),
+        held=tuple(run.name for run in held),
+        late=search.late,
+    )  # fmt: skip
+
+
+def _label(models: Sequence[Model], k: int) -> str:
+    if k < 2:
+        return ("as given", "refitted")[k]
+    now, before = models[k].effects, models[k - 1].effects
+    changes = ["+ " + ", ".join(e for e in now if e not in before), "- " + ", ".join(e for e in before if e not in now)]
+    return ", ".join(change for change in changes if len(change) > 2)
+
+
+def signal_errors(comparison: Comparison) -> dict[str, float]:
+    """Rms window error by signal over all runs, in its unit."""
+    names = comparison.runs[0].error
+    return {n: float(np.sqrt(np.mean([run.error[n].rms ** 2 for run in comparison.runs]))) for n in names}
+
+
+def noise_levels(comparison: Comparison) -> dict[str, float]:
+    """Noise by signal, in its unit."""
+    names = comparison.runs[0].error
+    return {n: float(np.sqrt(np.mean([run.error[n].noise ** 2 for run in comparison.runs]))) for n in names}
+
+
+def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:
+    assert step.added is not None
+    name, std = step.added.name, std | step.added.std
+    sizes = {c.name: c.unit for c in coordinates(model.library.find(name)) if c.is_size}
+    values = {}
+    for key, parameter in model.library.find(name).parameters.items():
+        dotted = f"{name}.{key}"
+        kind = [dotted, *(n for n, unit in sizes.items() if unit == sizes.get(dotted))]
+        ruler = RULER * max(abs(model[n]) for n in kind)
+        values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), ruler), parameter.unit)
+    return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
+
+
+def _latest(steps: Sequence[Step]) -> list[Trial]:
+    """Each candidate's trial in the last round it was tried in; what was added comes first."""
+    added = [step.added for step in steps if step.added]
+    seen = {trial.name: trial for step in steps for trial in step.trials}
+    seen |= {trial.name: trial for step in steps for trial in step.rivals}  # of the round in which they tied
+    names = [trial.name for trial in added]
+    return [*added, *sorted((t for n, t in seen.items() if n not in names), key=lambda trial: -trial.hypothesis.t)]
+
+
+def _ranked(trial: Trial) -> Ranked:
+    equation = max(trial.gain, key=lambda name: trial.gain[name])
+    return Ranked(trial.name, trial.hypothesis.t, trial.gain[equation], equation, trial.size, trial.objections, None)
+
+
+def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
+    """What fails in the refitted base: its equations, and the valve or the sensors where an added effect is theirs."""
+    found = [n for n, e in before.equations.items() if e.explained_by_noise is False and e.ratio_to_noise > SIGNIFICANT]
+    for addition in added:
+        module = model.library.find(addition.effect).__module__
+        for part in ("valve", "sensor"):
+            if f".{part}." in module and part not in found:
+                found.append(part)
+    return tuple(found)
+
+
+def remains(before: Comparison, after: Comparison) -> Unexplained | None:
+    """The equation that fails worst, over the variable that explains it best; None where nothing of size remains."""
+    worst, most = None, 1.0
+    for name, equation in after.equations.items():
+        if equation.explained_by_noise is False and excess(equation) > most:
+            worst, most = name, excess(equation)
+    shown = {n: d for n, d in after.dependences.get(worst or "", {}).items() if len(d.bins.centre)}
+    if worst is None or not shown:
+        return None
+    against, best = max(shown.items(), key=lambda item: item[1].explained_share)
+    bins, equation = best.bins, after.equations[worst]
+    return Unexplained(
+        worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,
+        equation.residual_rms, best.explained_share, material(worst, before, after),
+    )  # fmt: skip
+
+
+def excess(equation: EquationVerdict) -> float:
+    """Mean square of a residual beyond the noise's, in units of what is significant: above 1 it is."""
+    return (equation.ratio_to_noise**2 - 1.0) / (SIGNIFICANT**2 - 1.0)
+
+
+def material(name: str, before: Comparison, after: Comparison) -> bool:
+    """Whether what remains matters: forces beyond 0.7 % of the drive, and much, or no small rest of what was there."""
+    first, last, whole = before.equations[name], after.equations[name], driving(after, name)
+    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
+        return False
+    return excess(last) > REST * excess(first) or last.residual_rms > LARGE * whole
+
+
+def driving(comparison: Comparison, equation: str) -> float:
+    """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
+    seen = [run.course.seen for run in comparison.runs]
+    if equation == "momentum":
+        parts = [one["drive"] - one["force"] for one in seen]
+    else:
+        parts = [one[f"port_flow_{equation[-1]}"] for one in seen]
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def verdict(added: Sequence[Addition], unexplained: Unexplained | None) -> str:
+    """The one word for it."""
+    if unexplained is not None and unexplained.material:
+        return UNKNOWN
+    return FOUND if added else ADEQUATE

@@ -1,0 +1,156 @@
+"""The residuals of all equations along all runs, as one vector: what a candidate has to explain.
+
+Families: the momentum while the piston slides [N], in windows of 100 and 40 ms; the chambers [kg/s], in windows of
+200 and 40 ms; and the breakaways [N], the force at slip against the static friction the model claims there and then.
+They are those of `identify.equations`; each comes with the noise that the sensors alone give it.
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_coeffs
+
+from pneumo_ros.compare.binned import clusters
+from pneumo_ros.diagnose.course import Followed, follow_each, frame_of
+from pneumo_ros.diagnose.families import Family, families
+from pneumo_ros.equations.breakaway import REST
+from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run, check_position
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
+
+BLOCK = 0.4  # s: errors within a block belong together
+_CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
+
+
+class Evidence:
+    """Residual vectors of variants of a model along fixed runs.
+
+    What does not depend on the variant is made once: windows, their noise, which of them count. Arrays (residuals,):
+    family (index into `names`), run and block index of each entry, its time [s], and the noise in the entry's unit.
+    `drive`: root mean square of the force that drives the piston [N].
+    """
+
+    def __init__(self, model: Model, runs: Sequence[Run]) -> None:
+        self._index([Course(model, run, i) for i, run in enumerate(runs)])
+
+    def only(self, chosen: Sequence[int]) -> tuple["Evidence", NDArray[np.bool_]]:
+        """The evidence of some of the runs, by index, and which residuals are theirs."""
+        part = object.__new__(Evidence)
+        part._index([self.courses[i] for i in sorted(chosen)])
+        return part, np.isin(self.run, chosen)
+
+    def _index(self, courses: list["Course"]) -> None:
+        self.courses = courses
+        self.runs = tuple(course.run for course in courses)
+        families = [f for course in self.courses for f in course.families]
+        self.noise = np.concatenate([f.noise[f.usable] for f in families])
+        counts = [int(f.usable.sum()) for f in families]
+        self.names = tuple(dict.fromkeys(f.name for f in families))
+        self.family = np.repeat([self.names.index(f.name) for f in families], counts)
+        self.run = np.repeat([f.run for f in families], counts)
+        self.time = np.concatenate([f.time[f.usable] for f in families])
+        self.drive = float(np.sqrt(np.mean(np.concatenate([course.drive**2 for course in self.courses]))))
+        self.block = clusters(self.time, self.run, BLOCK)
+
+    def __len__(self) -> int:
+        return len(self.noise)
+
+    def residual(self, model: Model) -> Array:
+        """What is measured minus what `model` claims, over noise (residuals,)."""
+        return np.asarray(self.residuals(model, model.values[None])[0])
+
+    def residuals(self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False) -> Array:
+        """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
+
+        `ranking`: as exact as ranking candidates asks for, in less time.
+        """
+        longest_first = sorted(self.courses, key=lambda course: -len(course.run))  # or the last one is waited for
+        with ThreadPoolExecutor(threads) as pool:
+            parts = {course: pool.submit(course.values, model, parameters, ranking) for course in longest_first}
+        whole = np.concatenate([parts[course].result() for course in self.courses], axis=1) / self.noise
+        return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
+
+
+class Course:
+    """One run's part of the evidence."""
+
+    def __init__(self, model: Model, run: Run, index: int) -> None:
+        check_position(model, run)
+        self.run, self.frame = run, frame_of(run, model.force_driven)
+        self.families = families(model, self.frame, index)
+        self.held = np.append(run.held, run.held[-1])
+        self.drive = self.held if model.force_driven else model.effort(self.frame.states)
+        last = self.families[-1]
+        self.breakaways = last.breakaways
+        width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)
+        self.kernel = savgol_coeffs(2 * reach + 1, 2)  # a parabola over +-8 ms
+        self.spans = [
+            np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run)))
+            for b in self.breakaways
+        ]
+        ends = [b.index - round(t / run.sample_time) for b, t in zip(self.breakaways, last.slip_times, strict=True)]
+        self.inner = [
+            slice(max(b.index - width, 0) - span[0], end - span[0] + 1)
+            for b, end, span in zip(self.breakaways, ends, self.spans, strict=True)
+        ]
+        back = max(round(0.02 / run.sample_time), 1)
+        rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, ends, strict=True)]
+        self.rested = np.array(rested, dtype=np.int64)
+        self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
+
+    def values(self, model: Model, parameters: Array, ranking: bool = False) -> Array:
+        """Residuals (variants, usable windows) in their units, family after family."""
+        result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
+        measured = [self._measured(model, f, self.frame.states) for f in self.families]
+        for variant in follow_each(model, self.frame, parameters, ranking):
+            own = measured
+            if not variant.as_measured:
+                own = [self._measured(model, f, variant.states) for f in self.families]
+            q = parameters[variant.index]
+            parts = [self._value(model, q, variant, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
+            result[variant.index] = np.concatenate(parts)
+        return result
+
+    def _measured(self, model: Model, family: Family, states: Array) -> Measured:
+        """What an equation's residual takes from the frame's states alone."""
+        if family.equation == "breakaway":
+            return None
+        if family.equation == "momentum":
+            return MeasuredMotion.of(family.window, states[:, 0])
+        return Chamber(model, family.equation[-1]).measured(family.window, states)
+
+    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured) -> Array:
+        if measured is None:
+            return self._slips(model, q, variant.states)
+        if isinstance(measured, MeasuredChamber):
+            return measured.value(variant.claimed[:, measured.column - 1])
+        rows = measured.bump.centres(len(variant.states))
+        mass = model["piston.mass"] + self._see(model, q, variant.states[rows], rows)["added_mass"]
+        return measured.value(mass, variant.claimed[:, 0])
+
+    def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
+        """What the model with parameters `q` shows at the given states (rows, states) of these samples."""
+        out = np.empty((len(rows), len(model.composition.observed)))
+        model.kernel.observe(np.ascontiguousarray(states), q, self.held[rows], self.run.time[rows], out)
+        return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
+
+    def _slips(self, model: Model, q: Array, states: Array) -> Array:
+        """Largest force that friction held before each slip, minus the static friction claimed there and then."""
+        if not self.breakaways:
+            return np.empty(0)
+        rows = np.concatenate(self.spans)
+        seen = self._see(model, q, states[rows], rows)
+        load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
+        largest = [
+            max(float((d * np.convolve(part, self.kernel, "same")[inner]).max()), 0.0)
+            for part, inner, d in zip(load, self.inner, self.direction, strict=True)
+        ]
+        there = states[self.rested].copy()
+        there[:, 1] = self.direction * _CREEP
+        return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])

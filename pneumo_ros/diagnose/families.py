@@ -1,0 +1,72 @@
+"""The families of residuals that one run has: windows of an equation, and breakaways, with the noise of each."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.course import Frame, follow
+from pneumo_ros.diagnose.slip_time import force_spread, slip_times
+from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
+from pneumo_ros.equations.bump import Bump
+from pneumo_ros.equations.equations import Chamber, Momentum, measured_throughout
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+
+Array = NDArray[np.float64]
+
+WINDOWS = {"momentum": (0.1, 0.04), "chamber_a": (0.2, 0.04), "chamber_b": (0.2, 0.04)}  # s
+
+
+@dataclass(frozen=True)
+class Family:
+    """Windows of one equation and width in one run; arrays (windows,)."""
+
+    equation: str
+    width: float  # s; 0 for breakaways
+    run: int
+    time: Array
+    noise: Array
+    usable: NDArray[np.bool_] = field(repr=False)
+    bump: Bump | None = field(repr=False, default=None)
+    breakaways: tuple[Breakaway, ...] = ()
+    slip_times: tuple[float, ...] = ()  # s, of each of them
+
+    @property
+    def window(self) -> Bump:
+        """The window's shape; not of breakaways."""
+        assert self.bump is not None
+        return self.bump
+
+    @property
+    def name(self) -> str:
+        """As `momentum 40 ms`, `breakaway`."""
+        return f"{self.equation} {1e3 * self.width:.0f} ms" if self.width else self.equation
+
+
+def families(model: Model, frame: Frame, index: int) -> list[Family]:
+    """All families of one run along what `model` claims; `index` is the run's."""
+    run, (states, claimed) = frame.run, follow(model, frame)
+    found, momentum = [], Momentum(model, run, states)
+    for width in WINDOWS["momentum"]:
+        bump = Bump.of(width, run.sample_time)
+        found.append(_family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump)))
+    for chamber in "" if model.force_driven else "ab":
+        equation = Chamber(model, chamber)
+        rate, steep = claimed[:, equation.column], equation.steepness(run, states)
+        for width in WINDOWS[f"chamber_{chamber}"]:
+            bump = Bump.of(width, run.sample_time)
+            noise = equation.noise(bump, run, states, rate, steep)
+            found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
+    breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
+    late = slip_times(model, breakaways)
+    spread = np.array([force_spread(b, seconds) for b, seconds in zip(breakaways, late, strict=True)])
+    time = np.array([b.time for b in breakaways])
+    found.append(Family("breakaway", 0.0, index, time, spread, np.ones(len(time), dtype=bool), None, breakaways, late))
+    return found
+
+
+def _family(
+    equation: str, width: float, index: int, run: Run, bump: Bump, noise: Array, usable: NDArray[np.bool_]
+) -> Family:
+    return Family(equation, width, index, run.time[bump.centres(len(run))], noise, usable, bump)

@@ -1,0 +1,169 @@
+"""A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
+
+from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import ITERATIONS, Known, base_fit, fit_base, strain
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile, kinds
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.freedom import conditions, freed, relative
+from pneumo_ros.diagnose.hypothesis import (
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    everything,
+    family_scales,
+    log_likelihood,
+    missing,
+    weights,
+)
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.refit import default_free
+
+Array = NDArray[np.float64]
+
+KNOWN, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
+STEP = 0.005  # of a prior, or of what is usual of an effect
+AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
+UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
+
+
+class Fitter:
+    """The evidence of training and held-out runs, and fits of `start` and of what grows from it."""
+
+    def __init__(
+        self, start: Model, train: Sequence[Run], held: Sequence[Run] = (), candidates: Sequence[str] | None = None
+    ) -> None:
+        """`candidates`: names of all that may be added; by default whatever the model lacks."""
+        self.start, self._held_runs = start, held
+        found = missing(start) if candidates is None else _coordinates(start, candidates)
+        self.whole = everything(start, found)  # one kernel for all that may be added
+        self.train = Evidence(start, train)
+        self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
+        self._at_best = lru_cache(1)(lambda model: self._likelihood(self.refit(model)))
+
+    @cached_property
+    def held(self) -> Evidence:
+        """The evidence of the held-out runs, which only those need who judge by it."""
+        return Evidence(self.start, self._held_runs)
+
+    def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
+        """Of the free parameters of `model` but those `fixed`: the start's to a few per cent, added ones hardly."""
+        names, centre, prior, step = [], [], [], []
+        for name in default_free(model):
+            section, _, _key = name.partition(".")
+            if name in UNSEEN or name in fixed:
+                continue
+            if section in self.start.effects:
+                size = max(abs(self.start[name]), abs(self.start.specification(name).default))
+                middle, width, usual = self.start[name], KNOWN * size, USUAL * size
+            else:
+                c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
+                middle, usual = _usual(c, model[name])
+                width = usual * c.prior
+            names.append(name)
+            centre.append(middle)
+            prior.append(width)
+            step.append(STEP * usual)
+        return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
+
+    def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:
+        """All free parameters but those `fixed` fitted to the training evidence."""
+        return fit_base(self.train, model, self.known(model, fixed), iterations)
+
+    def simplest(self, model: Model, name: str) -> Model:
+        """The model, or one refitted with a size of its effect `name` neutral, if that explains as much.
+
+        Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they stand in for each other
+        over wide ranges, and a fit of both may end in a valley far from the true one.
+        """
+        own = coordinates(model.library.find(name))
+        if len(kinds(own)) == 1 or is_profile(own):
+            return model
+        best, least = model, self._likelihood(model) - AS_MUCH
+        for size in (c for c in own if c.is_size):
+            if model[size.name] != size.neutral:
+                simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
+                if (found := self._likelihood(simpler)) > least:
+                    best, least = simpler, found
+        return best
+
+    def against(self, model: Model, name: str, values: Mapping[str, float]) -> float:
+        """Log likelihood that the training evidence loses by an effect of these `values` beside `model`.
+
+        With it and without, all else is at its best.
+        """
+        larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
+        return self._at_best(model) - self._likelihood(larger, values)
+
+    def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
+        """Log likelihood of the training evidence and of what is known of the parameters but those `fixed`."""
+        return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model, fixed).offset(model))
+
+    def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
+        """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""
+        train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
+        names, (usual, others) = self.added(model) if bent is None else bent, self.conditions
+        return freed(train, names, usual), freed(held, names, others)
+
+    def added(self, model: Model) -> list[str]:
+        """Effects of `model` that the start lacks."""
+        return [name for name in model.effects if name not in self.start.effects]
+
+    @cached_property
+    def conditions(self) -> tuple[Array, Array]:
+        """Under which the residuals of both arise, relative to what is usual of those fitted."""
+        here = conditions(self.train)
+        return relative(here, here), relative(conditions(self.held), here)
+
+    def _fit(self, model: Model) -> BaseFit:
+        """The model on training evidence."""
+        return base_fit(self.train, self.whole, model, self.known(model))
+
+    def deviations(self, model: Model) -> dict[str, float]:
+        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing.
+
+        Beside a parameter that its range holds, the others are as sure as if it were known.
+        """
+        base = self.fit(model)
+        w = weights(self.train, base.residual, family_scales(self.train, base.residual))
+        A, e = base.slopes * w[:, None], w * base.residual
+        held = np.array([model[n] in (model.specification(n).low, model.specification(n).high) for n in base.names])
+        std = _spread(A, e, self.train)
+        std[~held] = _spread(A[:, ~held], e, self.train)
+        named = zip(base.names, std * base.prior, base.prior, strict=True)
+        return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
+
+    def extended(self, model: Model, h: Hypothesis) -> Model:
+        """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
+        known, moved = self.known(model), {}
+        for n, shift, p in zip(known.names, h.shift[: len(known.names)], known.prior, strict=True):
+            s = model.specification(n)
+            moved[n] = min(max(model[n] + shift * p, s.low), s.high)
+        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
+        values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
+        return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)
+
+
+def _spread(A: Array, e: Array, evidence: Evidence) -> Array:
+    """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, no less than noise alone gives."""
+    ridge = np.ones(A.shape[1])
+    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    robust = cluster_robust(A, e, evidence.block, bread, ridge)
+    return np.asarray(np.sqrt(np.maximum(np.diag(robust), np.diag(bread))))
+
+
+def _coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """Coordinates of effects of the model's library, by name."""
+    return {name: coordinates(model.library.find(name)) for name in names}
+
+
+def _usual(c: Coordinate, value: float) -> tuple[float, float]:
+    """Centre, and value per unit of the coordinate."""
+    if c.logarithmic:
+        return value if c.is_size else c.typical, max(abs(value), 1e-12)
+    return (c.neutral or 0.0), abs(c.scale)

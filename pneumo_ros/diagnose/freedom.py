@@ -1,0 +1,79 @@
+"""Freedom of shape: a machine's law need not be the catalogue's, and what differs must not pass for another effect.
+
+A seal's friction grows less than in proportion to the pressures, a spring hardens, a leak is an orifice. So an effect
+that was added may act more or less than its law says where the piston is elsewhere, faster, under other pressures or
+another input: a (1 + sum of e_k x_k), x_k the deviations of what is measured from its mean, in standard ones, and their
+squares less 1. The e_k stand beside the base parameters while further candidates are judged; the model that is refitted
+and that predicts keeps the catalogue's law. What sensors do has no such freedom: an offset is an offset.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.course import reads_wrong
+from pneumo_ros.diagnose.evidence import Course, Evidence
+from pneumo_ros.diagnose.hypothesis import BaseFit
+
+Array = NDArray[np.float64]
+
+FREE = 0.1  # standard deviation of e_k: a law is known to a tenth over the usual range of what it depends on
+
+
+def conditions(evidence: Evidence) -> Array:
+    """Under which each residual arises, in the middle of its window: position, speed, pressures, size of the input.
+
+    (residuals, 3 or 5).
+    """
+    columns = 3 + 2 * (not evidence.courses[0].run.force_driven)
+    values = np.zeros((len(evidence.time), columns))
+    for course in evidence.courses:
+        own = evidence.run == course.families[0].run
+        values[own] = _seen(course, evidence.time[own])
+    return values
+
+
+def relative(values: Array, others: Array) -> Array:
+    """Deviations x from the mean of others, in their standard ones, and x^2 - 1; what never changes is left out."""
+    middle, spread = others.mean(axis=0), others.std(axis=0)
+    moving = spread > 1e-9 * np.maximum(np.abs(middle), 1e-12)
+    x = (values[:, moving] - middle[moving]) / spread[moving]
+    return np.concatenate([x, x**2 - 1.0], axis=1)
+
+
+def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
+    """The fit with the e_k of each effect that was added as further base parameters; seen: `relative` conditions."""
+    added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
+    if not added:
+        return fit
+    columns = np.concatenate([FREE * _acting(fit, effect)[:, None] * seen for effect in added], axis=1)
+    count = columns.shape[1]
+    return replace(
+        fit,
+        names=(*fit.names, *(f"{effect} {k}" for effect in added for k in range(seen.shape[1]))),
+        prior=np.append(fit.prior, np.full(count, FREE)),
+        offset=np.append(fit.offset, np.zeros(count)),
+        slopes=np.concatenate([fit.slopes, columns], axis=1),
+        bends=count,
+    )
+
+
+def _seen(course: Course, time: Array) -> Array:
+    rows = np.clip(np.round(time / course.run.sample_time).astype(int), 0, len(course.frame.states) - 1)
+    states = course.frame.states[rows]
+    pressures = [] if course.run.force_driven else [states[:, 2], states[:, 3]]
+    return np.column_stack([states[:, 0], np.abs(states[:, 1]), *pressures, np.abs(course.held[rows])])
+
+
+def _acting(fit: BaseFit, effect: str) -> Array:
+    """What an effect changes in each residual (residuals,), by its slopes at its sizes."""
+    change = np.zeros(len(fit.residual))
+    for c in coordinates(fit.model.library.find(effect)):
+        if c.is_size and c.name in fit.names:
+            k = fit.names.index(c.name)
+            away = fit.model[c.name] if c.logarithmic else fit.model[c.name] - (c.neutral or 0.0)
+            change += fit.slopes[:, k] * away / fit.prior[k]
+    return change

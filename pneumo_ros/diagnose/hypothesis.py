@@ -1,0 +1,195 @@
+"""Hypotheses about what a model lacks: candidates and base parameters fitted to the evidence together.
+
+All hypotheses share one model that holds every candidate at its neutral setting, so that their residuals are lanes of
+one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+from scipy.sparse import csr_array
+
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.errors import PneumoError
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.library import FRAME
+from pneumo_ros.shooting.robust import huber_loss, huber_weight
+
+Array = NDArray[np.float64]
+
+FAR = 50.0  # usual sizes: no residual counts as larger
+TAIL = 5.0  # scales: beyond, an error counts less than squared
+OVERLAP = 0.6  # windows overlap: weight of each, so that together they count about once
+PROBE = 0.05  # u: finite-difference step of a candidate's coordinate
+BASE = ("dead_zone", "arctan_flow", "lugre_friction", "rod_atmospheric_force", "end_stop", "quadratic_drag")
+
+
+def robust_scale(size: Array) -> float:
+    """Root mean square of sizes (n,), each counted as fifty usual ones at most.
+
+    No tighter: an effect that shows in a few windows only (at slow motion, near an end) must not pass for outliers.
+    """
+    return float(np.sqrt(np.mean(np.minimum(size, FAR * usual(size)) ** 2))) if len(size) else 0.0
+
+
+def usual(size: Array) -> float:
+    """The usual one of sizes (n,): the deviation of Gaussian errors with their median, at least that of noise."""
+    return max(1.4826 * float(np.median(size)), 1.0) if len(size) else 1.0
+
+
+FLOOR = {"breakaway": 0.2}  # the spread given to breakaways is generous: their own scatter says more
+
+
+def family_scales(evidence: Evidence, residual: Array) -> Array:
+    """Robust scale (families,) of each family, at least the noise; 1 where it has no window."""
+    result = np.ones(len(evidence.names))
+    for k, name in enumerate(evidence.names):
+        own = evidence.family == k
+        if own.any():
+            result[k] = max(robust_scale(np.abs(residual[own])), FLOOR.get(name, 1.0))
+    return result
+
+
+def huber(u: Array) -> Array:
+    """Loss of sizes in scales: squared up to five, linear beyond."""
+    return huber_loss(u, TAIL)
+
+
+def weights(evidence: Evidence, residual: Array, scale: Array) -> Array:
+    """Factors (residuals,) of the residuals in iterated least squares."""
+    each = scale[evidence.family]
+    return np.asarray(OVERLAP * np.sqrt(huber_weight(residual / each, TAIL)) / each)
+
+
+def log_likelihood(evidence: Evidence, residual: Array) -> float:
+    """Of Gaussian errors whose family scales are what they are, windows counted once; noise bounds the scales."""
+    return float(np.sum(family_likelihoods(evidence, residual)))
+
+
+def family_likelihoods(evidence: Evidence, residual: Array) -> Array:
+    """The same by family (families,)."""
+    scale = family_scales(evidence, residual)
+    counts = np.bincount(evidence.family, minlength=len(scale)) * OVERLAP**2
+    loss = np.bincount(evidence.family, huber(residual / scale[evidence.family]), len(scale)) * OVERLAP**2
+    return np.asarray(-counts * np.log(scale) - loss)
+
+
+@dataclass
+class Hypothesis:
+    """A candidate under fit: u (coordinates,), shift of base parameters in priors (base,), and what it leaves."""
+
+    name: str
+    coordinates: tuple[Coordinate, ...]
+    u: Array
+    shift: Array
+    residual: Array = field(repr=False)
+    likelihood: float = -np.inf
+    t: float = 0.0
+    relief: float = 0.0  # log likelihood of the priors that base parameters regain beside it
+    covariance: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    slopes: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters by dotted name."""
+        return {c.name: c.value(u) for c, u in zip(self.coordinates, self.u, strict=True)}
+
+
+@dataclass(frozen=True)
+class BaseFit:
+    """The current model on one set of runs: residual, derivative by free parameters per prior, offsets from priors.
+
+    The last `bends` of the parameters are no parameters of the model but bend laws of its effects (see `freedom`).
+    """
+
+    model: Model
+    everything: Model
+    names: tuple[str, ...]
+    prior: Array
+    offset: Array
+    evidence: Evidence
+    residual: Array
+    slopes: Array
+    bends: int = 0
+
+    @property
+    def own(self) -> slice:
+        """Which of the parameters are the model's."""
+        return slice(0, len(self.names) - self.bends)
+
+
+def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:
+    """Coordinates of every effect of the model's library that it lacks, that can fade in, and that fits beside it."""
+    found = {}
+    for name in model.library.names():
+        if name not in FRAME and name not in BASE and name not in model.effects:
+            effect = coordinates(model.library.find(name))
+            if effect and _fits(model, name):
+                found[name] = effect
+    return found
+
+
+def _fits(model: Model, name: str) -> bool:
+    try:
+        model.with_effects([*model.effects, name])
+    except PneumoError:
+        return False
+    return True
+
+
+def everything(model: Model, found: dict[str, tuple[Coordinate, ...]]) -> Model:
+    """The model with all candidates in it, each neutral: it behaves as `model` does."""
+    values = {c.name: c.typical if c.neutral is None else c.neutral for each in found.values() for c in each}
+    order = sorted([*model.effects, *found])  # one kernel, whatever was added before
+    return model.with_effects(order, values)
+
+
+def vectors(model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
+    """Parameter vectors (variants, parameters) of a model with some values changed."""
+    names = {name: k for k, name in enumerate(model.parameters)}
+    result = np.tile(model.values, (len(variants), 1))
+    for row, variant in zip(result, variants, strict=True):
+        for name, value in variant.items():
+            row[names[name]] = value
+    return result
+
+
+def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Array, Array, Array]:
+    """Step x (p,) that minimises |w (r + K x)|^2 + |sqrt(ridge) (x + offset)|^2; also w K and the inverse normal."""
+    A = K * w[:, None]
+    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
+
+
+def solve_within(K: Array, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
+    """The step of `solve` that is best within low and high (p,).
+
+    One cut off at the end of its range would leave what trades with it where it does not belong.
+    """
+    A = K * w[:, None]
+    root = np.linalg.cholesky(A.T @ A + np.diag(ridge)).T
+    wanted = -np.linalg.solve(root.T, A.T @ (w * r) + ridge * offset)
+    return np.asarray(np.clip(lsq_linear(root, wanted, (low, high), method="bvls").x, low, high))
+
+
+def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:
+    """Covariance of a least-squares estimate whose errors belong together in blocks (Liang and Zeger 1986).
+
+    What a prior holds (`ridge`, its information) is as uncertain as the prior says.
+    """
+    scores = csr_array((e, block, np.arange(len(e) + 1)), (len(e), int(block.max()) + 1)).T @ A
+    n = len(scores)
+    return np.asarray(bread @ (scores.T @ scores * (n / max(n - A.shape[1], 1)) + np.diag(ridge)) @ bread)
+
+
+def wald(size: Array, covariance: Array) -> float:
+    """Student-like statistic of several sizes together: sqrt(chi2 - (n - 1)), |t| for one."""
+    if not len(size):
+        return 0.0
+    jitter = 1e-9 * np.trace(covariance) / len(size) + 1e-300
+    value = float(size @ np.linalg.solve(covariance + jitter * np.eye(len(size)), size))
+    return float(np.sqrt(max(value - (len(size) - 1), 0.0)))

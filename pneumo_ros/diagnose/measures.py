@@ -1,0 +1,116 @@
+"""What is left in each equation, with and without a candidate, and how surely one leaves less than the other."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.hypothesis import FLOOR, OVERLAP, family_scales, huber, robust_scale, usual
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+MOST_BLOCK = 3.0  # log likelihood that one block of time, or event, may say: it takes several to decide
+ACTS, FEWEST = 0.25, 30  # noise deviations that an effect changes a residual by where it acts, and windows that ask for
+FEW = {"breakaway": 8}  # where it is not that: windows overlap, breakaways do not
+WILD = 3.0  # usual sizes: beyond, a residual says no more against an effect
+NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
+
+
+def equation_of(name: str) -> str:
+    """The equation of a family: momentum, chamber_a, chamber_b or breakaway."""
+    return name.partition(" ")[0]
+
+
+def equation_helped(gain: dict[str, float]) -> str:
+    """The equation that gains most; "" of none."""
+    return max(gain, key=lambda name: gain[name], default="")
+
+
+def force(evidence: Evidence, before: Array, after: Array) -> float:
+    """Root mean square of what changes in the momentum equation [N]; 0 without it."""
+    own = np.isin(evidence.family, [k for k, name in enumerate(evidence.names) if equation_of(name) == "momentum"])
+    change = (before - after)[own] * evidence.noise[own]
+    return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
+
+
+def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) -> dict[str, float]:
+    """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's.
+
+    Of all windows, or of those in `rows` (residuals,), whose families have thirty of them, or eight breakaways.
+    """
+    found: dict[str, list[float]] = {}
+    for k, name in enumerate(evidence.names):
+        own = evidence.family == k if rows is None else rows & (evidence.family == k)
+        if own.sum() >= (1 if rows is None else FEW.get(name, FEWEST)):
+            scale = max(robust_scale(np.abs(residual[own])), FLOOR.get(name, 1.0))
+            found.setdefault(equation_of(name), []).append(scale**2)
+    return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
+
+
+def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> dict[str, float]:
+    """By equation, the share of the mean square residual that `after` lacks against `before`."""
+    first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
+    return {name: 1.0 - second[name] / first[name] for name in first}
+
+
+def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
+    """The same of what is usual: one wild breakaway of twenty says nothing against what the others bear out."""
+    each = [usual(np.abs(before[evidence.family == k])) for k in range(len(evidence.names))]
+    limit = WILD * np.array(each)[evidence.family]
+    return gains(evidence, np.clip(before, -limit, limit), np.clip(after, -limit, limit))
+
+
+def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
+    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks.
+
+    In `rows` (residuals,); where hardly a breakaway is in them, as when each changes a little, of all breakaways.
+    """
+    whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEW} for r in (before, after)]
+    first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
+    noise = {name: NOISE.get(name, 1.0) for name in first}
+    shares = ((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+    return max(shares, default=0.0)
+
+
+def acting(before: Array, after: Array) -> Rows:
+    """Where an effect acts (residuals,): a leak of the closed valve must not drown in what happens while it is open."""
+    return np.asarray(np.abs(before - after) > ACTS)
+
+
+def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
+    """By equation, the mean square of the residual beyond the noise's."""
+    return {n: max(value - NOISE.get(n, 1.0), 0.0) for n, value in mean_squares(evidence, residual).items()}
+
+
+def _surprise(evidence: Evidence, residual: Array) -> Array:
+    """Minus the log likelihood of each window, by the scales that the residual itself has.
+
+    By those of another model a larger moving mass, which noise of the position moves too, would look bad at rest.
+    """
+    scale = family_scales(evidence, residual)[evidence.family]
+    return np.asarray(np.log(scale) + huber(residual / scale))
+
+
+def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
+    """Log likelihood that `better` gains on `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
+    difference = OVERLAP**2 * (_surprise(evidence, worse) - _surprise(evidence, better))
+    return together(np.asarray(np.bincount(evidence.block, difference), dtype=np.float64))
+
+
+def together(saved: Array) -> tuple[float, float]:
+    """Log likelihoods that parts of the data save, none of which decides: their sum, and that over its scatter."""
+    parts = np.clip(saved, -MOST_BLOCK, MOST_BLOCK)
+    spread = float(np.sqrt(np.sum(parts**2)))
+    return float(parts.sum()), float(parts.sum() / spread) if spread > 0.0 else 0.0
+
+
+def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:
+    """The same over several bodies of evidence, (evidence, worse, better) each: deviations."""
+    total = spread = 0.0
+    for evidence, worse, better in pairs:
+        saved, z = advantage(evidence, worse, better)
+        total += saved
+        spread += (saved / z) ** 2 if z else 0.0
+    return total / np.sqrt(spread) if spread > 0.0 else 0.0

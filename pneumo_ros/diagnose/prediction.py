@@ -1,0 +1,50 @@
+"""How well a model predicts recordings over a second, in one number for each signal.
+
+The geometric mean over windows: a single breakaway caught a moment too early, which the last tenth of a per cent of
+static friction decides, costs thousands of noise deviations in its window and says nothing about the model.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.compare.verdicts import window_sizes
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.windows import predict
+
+Array = NDArray[np.float64]
+
+HORIZON = 1.0  # s
+BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
+
+
+def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
+    """By signal, the usual error over noise in windows of 1 s: the geometric mean of their rms."""
+    logs: dict[str, list[Array]] = {}
+    for run in runs:
+        noise = run.noise
+        for name, error in predict(model, run, HORIZON).errors.items():
+            logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
+    return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}
+
+
+def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of some signal got better by a twentieth and none worse by a tenth."""
+    return any(after[n] <= BETTER * before[n] for n in before) and harmless(before, after)
+
+
+def harmless(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of no signal got worse by a tenth."""
+    return all(after[n] <= WORSE * before[n] for n in before)
+
+
+def no_worse(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions of no signal got worse at all."""
+    return all(after[n] <= before[n] for n in before)
+
+
+def typical_error(errors: Mapping[str, float]) -> float:
+    """Root mean square over signals of what `windowed` returns: 1 where only noise is left."""
+    return float(np.sqrt(np.mean(np.square(list(errors.values())))))

@@ -1,0 +1,169 @@
+"""Candidates fitted to the evidence by Gauss-Newton, many at once, base parameters at their best beside each."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import at_best, relief_of
+from pneumo_ros.diagnose.hypothesis import (
+    PROBE,
+    BaseFit,
+    Hypothesis,
+    family_scales,
+    solve_within,
+    vectors,
+    weights,
+)  # fmt: skip
+from pneumo_ros.diagnose.significance import covariances, significance
+
+Array = NDArray[np.float64]
+
+FEW = 3  # sizes: of effects with more, only the linear fit is tried
+
+
+def refine(
+    base: BaseFit, hypotheses: Sequence[Hypothesis], iterations: int = 5, settled: bool = False
+) -> list[Hypothesis]:
+    """Gauss-Newton of all coordinates of some candidates at once, each with its own step control.
+
+    Unless they are `settled`, each begins at the best of a few sizes, and is fitted as exactly as ranking asks for.
+    """
+    best = [replace(h, likelihood=-np.inf) for h in hypotheses]
+    trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
+    moving, known = list(range(len(best))), dict[int, Array]()  # slopes of profiles, which hardly change
+    for _k in range(iterations):
+        variants: list[dict[str, float]] = []
+        spans = {}
+        for i in moving:
+            probes = [] if i in known else _probes(best[i], trial[i])
+            spans[i] = len(variants)
+            variants += [_values(best[i], v) for v in (trial[i], *probes)]
+        if not moving:
+            break
+        residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
+        for i in tuple(moving):
+            h, u, at = best[i], trial[i], spans[i]
+            C = known[i] if i in known else _slopes(h, u, residual[at : at + 1 + len(u)])
+            if _is_profile(h):
+                known[i] = C
+            tried = _judge(base, h, u, residual[at], C)
+            if tried.likelihood > h.likelihood:
+                best[i], trial[i] = tried, _next(base, tried, C, residual[at])
+            else:
+                trial[i] = 0.5 * (u + h.u)
+            if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
+                moving.remove(i)
+    return best
+
+
+def _is_profile(h: Hypothesis) -> bool:
+    return len(h.u) > FEW and all(c.is_size and not c.logarithmic for c in h.coordinates)
+
+
+def _slopes(h: Hypothesis, u: Array, residual: Array) -> Array:
+    """Derivatives (residuals, coordinates) from the residuals at u and at each of its probes."""
+    moved = np.array([v[j] - u[j] for j, v in enumerate(_probes(h, u))])
+    return np.asarray(((residual[1:] - residual[0]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T)
+
+
+def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
+    """For each hypothesis the best of a few sizes: what is linear near neutral need not be so where it leads."""
+    options: list[list[Array]] = []
+    for h in hypotheses:
+        size = np.array([c.is_size for c in h.coordinates])
+        linear = np.array([c.is_size and not c.logarithmic for c in h.coordinates])
+        fading = size & ~linear
+        own = [h.u]
+        if size.sum() <= FEW:
+            own += [np.where(linear, share * h.u, h.u) for share in (0.4, 0.1)]
+            own += [np.where(linear, share * np.where(h.u < 0.0, -1.0, 1.0), h.u) for share in (1.0, 0.3)]
+            own += [np.where(fading, h.u + shift, h.u) for shift in (-0.7, 0.7, 1.4) if fading.any()]
+        options.append([np.array([c.clip(x) for c, x in zip(h.coordinates, u, strict=True)]) for u in own])
+    variants = [_values(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
+    if not variants:
+        return []
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
+    found, at = [], 0
+    for own in options:
+        likelihood = [at_best(base, r)[2] for r in residual[at : at + len(own)]]
+        found.append(own[int(np.argmax(likelihood))])
+        at += len(own)
+    return found
+
+
+def _values(h: Hypothesis, u: Array) -> dict[str, float]:
+    return {c.name: c.value(x) for c, x in zip(h.coordinates, u, strict=True)}
+
+
+def _probes(h: Hypothesis, u: Array) -> list[Array]:
+    """u with each coordinate in turn moved by a little, away from a bound."""
+    found = []
+    for j, c in enumerate(h.coordinates):
+        v = u.copy()
+        v[j] = c.clip(u[j] + PROBE)
+        if abs(v[j] - u[j]) < 0.5 * PROBE:
+            v[j] = c.clip(u[j] - PROBE)
+        found.append(v)
+    return found
+
+
+def _system(base: BaseFit, h: Hypothesis, u: Array, C: Array) -> tuple[Array, Array, Array]:
+    """Slopes, ridge and offset of base parameters and candidate together, about base values and u."""
+    p, priors = len(base.names), np.array([c.prior for c in h.coordinates])
+    ridge = np.concatenate([np.ones(p), 1.0 / priors**2])
+    return np.concatenate([base.slopes, C], axis=1), ridge, np.concatenate([base.offset, u])
+
+
+def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hypothesis:
+    """The hypothesis at u, base parameters at their best there."""
+    p = len(base.names)
+    shift, after, value = at_best(base, here)
+    value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
+    K, ridge, _offset = _system(base, h, u, C)
+    w = weights(base.evidence, after, family_scales(base.evidence, after))
+    A = K * w[:, None]
+    of_all = of_sizes = covariances(base, A, w * after, ridge)
+    sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
+    if len(sizes) < len(u):
+        # Without the effect there is no shape to be uncertain of. Free beside a small size, a shape that trades with
+        # it, as a share of flow with its conductance, would hide the largest gain.
+        kept = [*range(p), *(p + j for j in sizes)]
+        of_sizes = covariances(base, A[:, kept], w * after, ridge[kept])
+    t = significance([h.coordinates[j] for j in sizes], u[sizes], *of_sizes)
+    relief = relief_of(base, shift)
+    return replace(
+        h, u=u.copy(), shift=shift, residual=after, likelihood=value, t=t, covariance=of_all[0], slopes=C, relief=relief
+    )
+
+
+def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
+    """u of the next Gauss-Newton step, within the bounds."""
+    K, ridge, offset = _system(base, h, h.u, C)
+    after, first = h.residual, len(base.names)
+    step = np.zeros(len(h.u))
+    for _ in range(3):
+        w = weights(base.evidence, after, family_scales(base.evidence, after))
+        x = bounded_step(h, K, here, w, ridge, offset)
+        after, step = here + K @ x, x[first:]
+    logs = np.array([c.logarithmic for c in h.coordinates])
+    step = np.where(logs, np.clip(step, -1.0, 1.0), np.clip(step, -3.0, 3.0))
+    return np.array([c.clip(v) for c, v in zip(h.coordinates, h.u + step, strict=True)])
+
+
+def bounded_step(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
+    """The best step with the candidate's coordinates kept within their bounds."""
+    low, high = np.full(K.shape[1], -np.inf), np.full(K.shape[1], np.inf)
+    ends = np.array([c.ends for c in h.coordinates])
+    low[-len(h.u) :], high[-len(h.u) :] = (ends - h.u[:, None]).T
+    return solve_within(K, here, w, ridge, offset, low, high)
+
+
+def held_out(base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
+    """Residuals of hypotheses on runs that took no part in their fit: parameters as they were found."""
+    if not hypotheses:
+        return []
+    model, evidence = base.everything, held.evidence
+    residual = evidence.residuals(model, vectors(model, [h.values for h in hypotheses]))
+    return [r + held.slopes @ h.shift for r, h in zip(residual, hypotheses, strict=True)]

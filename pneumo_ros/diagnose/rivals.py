@@ -1,0 +1,67 @@
+"""Effects that recordings cannot tell apart, and the simpler one of two that explain the same."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.hypothesis import BaseFit
+from pneumo_ros.diagnose.measures import pooled_advantage
+from pneumo_ros.diagnose.trial import MATERIAL, T_LEAST, Trial
+
+Array = NDArray[np.float64]
+
+ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
+TIED = 2.5  # deviations by which a rival must be worse to be told apart
+SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
+
+
+def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -> list[Trial]:
+    """Trials whose residuals all runs together cannot tell from the best one's."""
+    found = []
+    for other in others:
+        if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
+            continue
+        if other.score < ALIKE * best.score or best.name in _contained(base, other):
+            continue
+        if _likeness(held.residual - best.held, held.residual - other.held) < SAME:
+            continue
+        if _tied(base, held, best, other):
+            found.append(other)
+    return found
+
+
+def _likeness(one: Array, other: Array) -> float:
+    """Cosine of the angle between what two effects change."""
+    size = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return float(one @ other) / size if size else 0.0
+
+
+def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:
+    """The first of `good`, or what it contains when the runs do not ask for more; None of none.
+
+    They ask for more when they tell the two apart, and what lies between them is of some size.
+    """
+    for other in good[1:]:
+        little = _between(held, good[0], other) < MATERIAL
+        if other.name in _contained(base, good[0]) and (little or _tied(base, held, good[0], other)):
+            return other
+    return good[0] if good else None
+
+
+def _between(held: BaseFit, best: Trial, other: Trial) -> float:
+    """Size of what two effects change differently, over that of what the best one changes."""
+    whole = float(np.linalg.norm(held.residual - best.held))
+    return float(np.linalg.norm(other.held - best.held)) / whole if whole else 0.0
+
+
+def _contained(base: BaseFit, trial: Trial) -> tuple[str, ...]:
+    return base.model.library.find(trial.name).contains
+
+
+def _tied(base: BaseFit, held: BaseFit, best: Trial, other: Trial) -> bool:
+    pairs = [
+        (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
+        (held.evidence, other.held, best.held),
+    ]
+    return pooled_advantage(pairs) < TIED

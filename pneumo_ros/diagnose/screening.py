@@ -1,0 +1,124 @@
+"""Every candidate fitted linearly to part of the evidence, and those chosen that are fitted in earnest."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import relief_of, strain
+from pneumo_ros.diagnose.coordinates import Coordinate, starts
+from pneumo_ros.diagnose.hypothesis import (
+    BaseFit,
+    Hypothesis,
+    cluster_robust,
+    family_likelihoods,
+    family_scales,
+    huber,
+    log_likelihood,
+    missing,
+    solve,
+    vectors,
+    wald,
+    weights,
+)  # fmt: skip
+
+Array = NDArray[np.float64]
+
+SCREENED = 50.0  # s of recordings by which candidates are ranked first
+SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
+STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
+IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
+TINY = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
+
+
+def worst(base: BaseFit) -> BaseFit:
+    """The part of the training evidence where the model is worst: enough to rank by."""
+    runs, left = [], SCREENED
+    e = base.evidence
+    misfit = [float(np.mean(huber(base.residual[e.run == i]))) for i in range(len(e.runs))]
+    for i in np.argsort(misfit)[::-1]:
+        if left > 0.0:
+            runs.append(int(i))
+            left -= float(e.runs[i].time[-1])
+    part, rows = e.only(runs)
+    return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
+
+
+def screen(base: BaseFit) -> list[Hypothesis]:
+    """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
+
+    Where base parameters are strained, also by the slope at neutral: what they stand in for, they do by slopes.
+    """
+    found = missing(base.model)
+    tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
+    if strain(base.offset) > STRAINED:
+        tasks += [(name, effect, TINY * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
+    variants: list[dict[str, float]] = [{}]
+    spans: list[tuple[int, int, list[int]]] = []
+    for _name, effect, u in tasks:
+        shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
+        sizes = [k for k, c in enumerate(effect) if c.is_size]
+        own = []
+        for k in sizes:
+            values = {c.name: c.neutral for c in effect if c.is_size and c.neutral is not None}
+            own.append(values | shape | {effect[k].name: effect[k].value(u[k])})
+        spans.append((len(variants), len(own), sizes))
+        variants += own
+    residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
+    result: list[Hypothesis] = []
+    for (name, effect, u), (first, count, sizes) in zip(tasks, spans, strict=True):
+        change = (residual[first : first + count] - residual[0]).T
+        result.append(_linear(base, name, effect, u, sizes, change))
+    return sorted(result, key=lambda h: -h.likelihood)
+
+
+def _one_size(effect: tuple[Coordinate, ...]) -> bool:
+    return sum(c.is_size for c in effect) == 1 and not any(c.is_size and c.logarithmic for c in effect)
+
+
+def _linear(
+    base: BaseFit, name: str, effect: tuple[Coordinate, ...], u: Array, sizes: list[int], C: Array
+) -> Hypothesis:
+    """Linear fit of the sizes of one candidate beside the base parameters.
+
+    Sizes that change nothing here, as of a profile where no recording goes, stay neutral.
+    """
+    idle = [k for k, change in zip(sizes, C.T, strict=True) if np.max(np.abs(change)) < IDLE]
+    if 0 < len(idle) < len(sizes):
+        kept = [k for k in range(len(effect)) if k not in idle]
+        C = C[:, [k not in idle for k in sizes]]
+        sizes = [kept.index(k) for k in sizes if k not in idle]
+        effect, u = tuple(effect[k] for k in kept), u[kept]
+    K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
+    ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
+    offset = np.concatenate([base.offset, np.zeros(len(sizes))])
+    after, x = base.residual, np.zeros(K.shape[1])
+    for _ in range(5):
+        scale = family_scales(base.evidence, after)
+        x, A, bread = solve(K, base.residual, weights(base.evidence, after, scale), ridge, offset)
+        after = base.residual + K @ x
+    w = weights(base.evidence, after, scale)
+    cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
+    start = u.copy()
+    for k, size in zip(sizes, x[p:], strict=True):
+        c = effect[k]
+        start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
+    relief = relief_of(base, x[:p])
+    value = log_likelihood(base.evidence, after) - strain(x[:p] + base.offset)
+    return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
+
+
+def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
+    """The first of each name, `most` of those that help the gas and as many of those that help the mechanics.
+
+    What is missing in one must not crowd out what is missing in the other.
+    """
+    gas = np.array([name.startswith("chamber") for name in base.evidence.names])
+    before, found = family_likelihoods(base.evidence, nothing.residual), dict[str, tuple[bool, Hypothesis]]()
+    for h in ranked:
+        gain = family_likelihoods(base.evidence, h.residual) - before
+        helps_gas = bool(np.sum(gain[gas]) > np.sum(gain[~gas]))
+        if h.name not in found and sum(other == helps_gas for other, _ in found.values()) < most:
+            found[h.name] = helps_gas, h
+    return [h for _, h in found.values()]

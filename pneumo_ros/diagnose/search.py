@@ -1,0 +1,215 @@
+"""The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import unaided
+from pneumo_ros.diagnose.court import TEXTURE, put_on_trial, remaining, size_in, undetermined
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
+from pneumo_ros.diagnose.measures import excess, force
+from pneumo_ros.diagnose.polishing import polish
+from pneumo_ros.diagnose.prediction import harmless, no_worse, pays, windowed
+from pneumo_ros.diagnose.refining import held_out, refine
+from pneumo_ros.diagnose.rivals import rivals, simplest
+from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
+from pneumo_ros.diagnose.slip_trials import longer
+from pneumo_ros.diagnose.slips import polished, slips, with_values_of
+from pneumo_ros.diagnose.steps import Found, Step, without
+from pneumo_ros.diagnose.strain import followed
+from pneumo_ros.diagnose.timing import lateness, later
+from pneumo_ros.diagnose.trial import MATERIAL, Trial
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
+SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
+MOST = 4  # effects added
+VANISHED = "nothing of it is left beside what was added since"
+UNHELPFUL = "predictions of held-out runs over 1 s get no better with it"
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """The candidates beside one model: what they start from, their trials, best first, and the first ranking of all."""
+
+    base: BaseFit
+    held: BaseFit
+    trials: list[Trial]
+    screened: list[Hypothesis]
+    quiet: bool  # whether no force of size is unexplained
+
+
+class Search:
+    """Everything that stays the same during one search."""
+
+    def __init__(
+        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
+    ) -> None:
+        self.progress = progress or (lambda share, text: None)
+        self.late = lateness(model, train)  # s
+        train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
+        self.fitter = Fitter(model, train, held)
+        self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
+        # what is asked of a model again is kept
+        self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
+        self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
+        self.ranked = lru_cache(1)(self._ranked)
+        self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
+
+    def run(self) -> Found:
+        """Add effects one after another while they pass every test."""
+        self.progress(0.05, "refitting what the model has")
+        base = self.polish(self.fitter.refit(self.start))
+        model, steps = base, list[Step]()
+        before, vanished = self.predicted(base), dict[str, str]()
+        refused = vanished  # beside this model: another one may make room for it
+        least = before  # of all models so far: what mends an added law of another shape is no effect
+        try:
+            while True:
+                k = len(model.effects) - len(base.effects)
+                self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
+                step = self.round(model, refused)
+                if step.added is None or k == MOST:
+                    steps.append(replace(step, added=None))
+                    break
+                self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
+                new, gone = self.extended(model, step.added)
+                after = self.predicted(new)
+                if step.added.name in gone or not convinces(step.added, before, after):
+                    refused = refused | {step.added.name: UNHELPFUL}
+                    continue
+                vanished = vanished | dict.fromkeys(gone, VANISHED)
+                refused = vanished
+                steps = [without(s, gone, VANISHED) for s in (*steps, step)]
+                model, before = new, after
+                least = {name: min(least[name], error) for name, error in after.items()}
+            self.progress(0.85, "looking at breakaways and reversals")
+            new, last = self.slip_round(model)
+            if last is not None and last.added is not None and pays(least, self.predicted(new)):
+                steps[-1:] = [last, replace(steps[-1], model=new)]
+                model = new
+            base, model = self.settled(base), self.settled(model)
+        except KeyboardInterrupt:
+            steps = [step for step in steps if step.added is None or step.added.name in model.effects]
+            return Found(base, model, tuple(steps), interrupted=True)
+        return Found(base, model, tuple(steps))
+
+    def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
+        """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
+        new = self.fitter.refit(self.fitter.extended(model, trial.hypothesis))
+        new = self.polish(self.fitter.simplest(new, trial.name))
+        std = self.fitter.deviations(new)
+        gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or undetermined(new, n, std)]
+        if gone:
+            new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
+        return new, gone
+
+    def polish(self, model: Model) -> Model:
+        """Friction refitted to breakaways and reversals, which decide about predictions through them.
+
+        Of an axis driven by a force only where predictions get no worse: no pressures hold it back as it slides.
+        """
+        made = self.slips(model)
+        if made is None:
+            return model
+        new = with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
+        return new if not model.force_driven or self._predicts_training(new, model) else model
+
+    def settled(self, model: Model) -> Model:
+        """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.
+
+        That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back; and
+        only where held-out runs are predicted no worse, either.
+        """
+        if not model.force_driven and self.slips(model) is not None:
+            return model
+        self.progress(0.9, "refitting by prediction")
+        sure = self.fitter.deviations(model)  # what equations along the motion say: segments alone bend it
+        new = polish(self.fitter, model, self.train.runs, sure=sure).model
+        better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
+        return new if better else model
+
+    def _predicts_training(self, new: Model, old: Model) -> bool:
+        """Whether one model predicts no signal of the training runs worse than another."""
+        return no_worse(windowed(old, self.train.runs), windowed(new, self.train.runs))
+
+    def slip_round(self, model: Model) -> tuple[Model, Step | None]:
+        """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
+
+        Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
+        """
+        made, ranked = self.slips(model), self.ranked(model)
+        if made is None or not ranked.quiet:
+            return model, None
+        first = model.effects == self.start.effects
+        against = partial(self.fitter.against, model)
+        return longer(model, made, ranked.screened, self.fitter.deviations(model), against, first)
+
+    def round(self, model: Model, refused: Mapping[str, str]) -> Step:
+        """The candidates tried beside a model and the best of them, but for those `refused`, and why."""
+        ranked = self.ranked(model)
+        base, held = ranked.base, ranked.held
+        trials = [replace(t, refused=refused.get(t.name, "")) for t in ranked.trials]
+        best = simplest(base, held, [trial for trial in trials if not trial.objections])
+        others = rivals(base, held, best, trials) if best else []
+        scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
+        return Step(model, tuple(trials), best, tuple(others), scales[0], scales[1])
+
+    def _ranked(self, model: Model) -> Ranked:
+        """Rank all candidates on the training runs, try the best on the held-out ones."""
+        base, held = self.fitter.fits(model)
+        nothing = unaided(base)
+        held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
+        hypotheses, screened = self.candidates(base)
+        trials = self.tried(base, held, nothing, hypotheses, screened)
+        now = excess(self.held, held.residual)
+        self.first = self.first or now
+        quiet = force(self.held, held.residual, np.zeros(len(self.held))) <= TEXTURE * self.held.drive
+        trials = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in trials]
+        return Ranked(base, held, trials, screened, quiet)
+
+    def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
+        """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
+        part = worst(base)
+        screened, bare = screen(part), unaided(part)
+        promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
+        short = shortlist(part, bare, promising or screened[:SHOWN], SHORTLIST)
+        fitted = sorted(refine(part, short), key=lambda h: -h.likelihood)
+        return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
+
+    def tried(
+        self,
+        base: BaseFit,
+        held: BaseFit,
+        nothing: Hypothesis,
+        hypotheses: Sequence[Hypothesis],
+        screened: Sequence[Hypothesis],
+    ) -> list[Trial]:
+        """Trials of the hypotheses, and of effects that strained base parameters may stand in for."""
+        first = base.model.effects == self.start.effects
+        trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
+        good = [trial.name for trial in trials if not trial.objections]
+        relieving = followed(self.fitter, base, screened, nothing.relief, good)
+        return trials + put_on_trial(base, held, *relieving, nothing, first)
+
+
+def convinces(trial: Trial, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether predictions bear an effect out, or need not: its equation is explained, or the data do not say at all.
+
+    While something else is missing, predictions over a second may hang on that alone; but where the data do not say,
+    predictions may not get worse either.
+    """
+    return trial.clear or pays(before, after) or (trial.absorbed and harmless(before, after))
+
+
+def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:
+    return dict(zip(evidence.names, family_scales(evidence, residual).tolist(), strict=True))

@@ -1,0 +1,225 @@
+"""Effects tried on breakaways and reversals: begun at several sizes and shapes, fitted, judged by events held out."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
+from pneumo_ros.diagnose.court import magnitude
+from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
+from pneumo_ros.diagnose.measures import together
+from pneumo_ros.diagnose.mechanics import moves
+from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
+from pneumo_ros.diagnose.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
+from pneumo_ros.diagnose.steps import Step
+from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.plant import Model
+from pneumo_ros.shooting.refit import refit_segments
+
+Array = NDArray[np.float64]
+
+BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
+SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
+TRIED = 3  # candidates that are fitted, of all that begin well
+ENOUGH = 0.9  # share of the error beyond the noise's
+PART = 0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
+RESIZED, BETTER = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
+# log likelihood: starts of a state that an effect has for itself are free in every event, and so follow any slow force
+CONTRADICTED = 10.0
+Against = Callable[[str, Mapping[str, float]], float]  # of an effect's name and values: what the equations lose by it
+QUANTILES = (0.5, 0.75)  # of the events' errors: the first that is poor is looked at
+
+
+@dataclass(frozen=True)
+class Slipping:
+    """A candidate on the events: the mechanics with it, and errors per event without and with it, both ways."""
+
+    name: str
+    model: Model
+    train: Array
+    held: Array
+    std: dict[str, float]  # of its parameters
+    against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events ask for it
+
+
+def longer(
+    model: Model,
+    made: tuple[Model, Slips],
+    screened: Sequence[Hypothesis],
+    known: dict[str, float],
+    against: Against,
+    first: bool,
+) -> tuple[Model, Step | None]:
+    """The model with the effect that its breakaways and reversals ask for, and the trials; None where they are fine.
+
+    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: what the equations
+    along the motion say of an effect beside it; `first`: nothing was added.
+    """
+    alone, found = made
+    segments = found.train(alone)
+    train, held = errors(alone, segments), errors(alone, found.held(alone))
+    poor = [q for q in QUANTILES if max(np.quantile(train, q), np.quantile(held, q)) >= POOR]
+    if not poor:
+        return model, None
+    q = poor[0]
+    tried = Candidates(alone, found, known, against, held, q).tried(blind(screened, alone))
+    effects = [coordinates(alone.library.find(c.name)) for c in tried]
+    trials = [as_trial(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)]
+    good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
+    usual = float(np.quantile(held, q))
+    step = Step(model, tuple(trials), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
+    if good:
+        chosen = good[0][0]
+        model = with_values_of(model.with_effects([*model.effects, chosen.name]), chosen.model)
+    return model, step
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Effects to try beside `alone` on its events, by the `q`-quantile of errors; `held`: of the held-out ones now.
+
+    `known`: standard deviations of the friction; `against`: what the equations along the motion say of an effect.
+    """
+
+    alone: Model
+    found: Slips
+    known: dict[str, float]
+    against: Against
+    held: Array
+    q: float
+
+    def tried(self, names: Sequence[str]) -> list[Slipping]:
+        """Those of the named effects that look best, fitted to the training events; smallest errors first.
+
+        Where an effect leaves hardly more than noise, the rest is spared.
+        """
+        most_are_poor = self.q == QUANTILES[0]
+        tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
+        begins = tangents.best if tangents else partial(by_sizes, self.alone, self.found)
+        with ThreadPoolExecutor(2) as pool:
+            begin = list(pool.map(begins, names))
+        result = list[Slipping]()
+        for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
+            result.append(self._fitted(name, model))
+            if self._explains(result[-1]):
+                return sorted(result, key=self._left)
+        for k, c in sorted(enumerate(result), key=lambda one: self._left(one[1])):
+            result[k] = self._resized(c)
+            if self._explains(result[k]):
+                break
+        return sorted(result, key=self._left)
+
+    def _fitted(self, name: str, begin: Model) -> Slipping:
+        prior, effect = friction_priors(self.alone, self.known), coordinates(self.alone.library.find(name))
+        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
+        refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
+        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in effect}
+        train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
+        asked_for = self._share(held) >= SHARE
+        loss = self.against(name, {n: fitted[n] for n in std}) if asked_for else 0.0
+        return Slipping(name, fitted, train, held, std, loss)
+
+    def _resized(self, c: Slipping) -> Slipping:
+        """A candidate that explains part, begun anew from other sizes as long as it explains more.
+
+        Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
+        the equations along the motion speak against.
+        """
+        if self._share(c.held) < PART:
+            return c
+        ways = (self._followed(c, factor) for factor in RESIZED)
+        return next((other for other in ways if other is not c), c)
+
+    def _followed(self, c: Slipping, factor: float) -> Slipping:
+        """The last of the fits that begin at so many times the size of the one before and are better."""
+        effect = coordinates(self.alone.library.find(c.name))
+        while not self._explains(c):
+            new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
+            if not self._better(new, c):
+                break
+            c = new
+        return c
+
+    def _better(self, new: Slipping, old: Slipping) -> bool:
+        """Whether it is worth another go: it explains more, or enough of what the other was refused for."""
+        if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
+            return self._left(new) <= BETTER * self._left(old)
+        return new.against < CONTRADICTED and self._share(new.held) >= SHARE
+
+    def _explains(self, c: Slipping) -> bool:
+        return self._share(c.held) > ENOUGH and c.against < CONTRADICTED
+
+    def _share(self, held: Array) -> float:
+        return share_removed(self.held, held, self.q)
+
+    def _left(self, c: Slipping) -> float:
+        return float(np.quantile(c.train, self.q) + np.quantile(c.held, self.q))
+
+
+def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[str, float]:
+    """Sizes of an effect in `model`, so many times larger."""
+    return {c.name: c.grown(model[c.name], factor) for c in effect if c.is_size}
+
+
+def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
+    """Effects of the mechanics about which the equations along the motion say little, or which have a state of theirs.
+
+    Windows of the equations average over what rings or lags faster than they are long.
+    """
+    builds, library = missing(alone), alone.library
+    seen: dict[str, float] = {}
+    for h in screened:
+        spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
+        seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
+    few = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW]
+    return [n for n in few if seen[n] < BLIND or library.find(n).states]
+
+
+def share_removed(before: Array, after: Array, q: float) -> float:
+    """Share of the `q`-quantile of errors beyond the noise's that is gone."""
+    first, second = float(np.quantile(before, q)), float(np.quantile(after, q))
+    return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
+
+
+def deviations_better(before: Array, after: Array, samples: int) -> float:
+    """By how many deviations events of that many samples got better; what an effect does not touch says nothing."""
+    return together(0.5 * samples * (before - after))[1]
+
+
+def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
+    """Whether it is a size that differs from none by more than twice its standard deviation."""
+    return k.is_size and abs(value - (k.neutral or 0.0)) > 2.0 * std.get(k.name, np.inf)
+
+
+def as_trial(
+    c: Slipping,
+    effect: tuple[Coordinate, ...],
+    base_train: Array,
+    base_held: Array,
+    q: float,
+    samples: int,
+    first: bool,
+) -> Trial:
+    """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
+
+    `samples` of an event. All events together tell whether there is an effect, those held out whether it predicts.
+    """
+    u = np.array([k.u(c.model[k.name]) for k in effect])
+    every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
+    h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
+    gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
+    share = share_removed(base_held, c.held, q)
+    enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
+    if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
+        enough = f"the equations along the motion speak against it (log likelihood -{c.against:.3g})"
+    if not any(determined(k, c.model[k.name], c.std) for k in effect):
+        enough = enough or "its size is no larger than its uncertainty"
+    z = deviations_better(base_held, c.held, samples)
+    return Trial(
+        h, np.empty(0), {"slip": gain}, z, magnitude(effect, u), True, share, first, 0.0,
+        float(np.quantile(base_train, q) - np.quantile(c.train, q)), refused=enough, std=c.std,
+    )  # fmt: skip

@@ -1,0 +1,112 @@
+"""What no equation along the motion shows: effects that act between sticking and sliding, judged by short simulations.
+
+The mechanics alone are simulated through breakaways, stops and reversals, every start fitted anew. How well a model
+does is told by the median over events of the squared error per sample, or by their upper quartile: a single breakaway
+caught a moment too early or too late, which no start mends, says nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events, mechanical
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.problem import TAIL
+from pneumo_ros.shooting.refit import refit_segments
+from pneumo_ros.shooting.robust import huber_loss
+from pneumo_ros.shooting.segments import Segments
+from pneumo_ros.shooting.start import fit_starts
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
+STATIC, COMMON = "lugre_friction.static_friction", 0.005
+FEWEST = 12  # events
+SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
+POOR = (
+    1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
+)
+STALLED = 0.5  # of the error it began with: a refit that leaves more is not begun anew
+LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
+FEW = 3  # parameters: the events are too few to fit more
+
+
+@dataclass(frozen=True)
+class Slips:
+    """Events of training and held-out runs, for one mechanical model and its variants."""
+
+    train_runs: tuple[Run, ...]
+    held_runs: tuple[Run, ...]
+    train_rows: Rows
+    held_rows: Rows
+
+    def train(self, model: Model) -> Segments:
+        """Training events, first guesses by `model`."""
+        return events(model, self.train_runs, self.train_rows)
+
+    def held(self, model: Model) -> Segments:
+        """Held-out events."""
+        return events(model, self.held_runs, self.held_rows)
+
+
+def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Model, Slips] | None:
+    """The mechanics of `model` and the events to judge them by; None where either is missing."""
+    alone = mechanical(model)
+    if alone is None or "lugre_friction" not in alone.effects:
+        return None
+    first, second = (tuple(driven_by_pressures(model, run) for run in runs) for runs in (train, held))
+    found = Slips(first, second, event_rows(alone, first), event_rows(alone, second))
+    return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST else None
+
+
+def with_values_of(model: Model, other: Model) -> Model:
+    """The model with all parameters that `other` has at its values."""
+    return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
+
+
+def errors(model: Model, segments: Segments) -> Array:
+    """Mean squared error per sample over the noise's (events,), robust, every start fitted."""
+    x = fit_starts(model, segments)
+    whitened = segments.residuals(model, x)[0]
+    far = 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
+    return np.asarray(2.0 * (np.sum(huber_loss(whitened, TAIL), axis=1) + far) / whitened.shape[1])
+
+
+def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = ()) -> Model:
+    """The mechanics with their friction, and what was `added` to them, refitted to the training events.
+
+    `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise. Static friction a few per
+    cent off puts slips to other moments, and the refit into a valley that it leaves when begun anew where it ended.
+    """
+    prior = friction_priors(alone, known)
+    for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
+        if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
+            sure = known[name] < SURE * abs(alone[name])
+            prior[name] = known[name] if sure else LOOSE * abs(alone[name])
+    best, left = alone, _level(errors(alone, found.train(alone)))
+    while True:
+        new = refit_segments(best, found.train(best), list(prior), prior).model
+        before, left = left, _level(errors(new, found.train(new)))
+        if not left < before:
+            return best
+        best = new
+        if left < POOR or left > STALLED * before:
+            return best
+
+
+def _level(errors: Array) -> float:
+    """Geometric mean: a breakaway at the wrong moment counts, but not as much as it errs."""
+    return float(np.exp(np.mean(np.log(errors))))
+
+
+def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
+    """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %.
+
+    Static friction at least half a per cent: by that much all breakaways may be off together, as slip times may be.
+    """
+    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in (f"lugre_friction.{key}" for key in FREE)}
+    return prior | {STATIC: max(prior[STATIC], COMMON * alone[STATIC])}

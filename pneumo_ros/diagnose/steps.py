@@ -1,0 +1,38 @@
+"""What a search did: its rounds and its outcome."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.plant import Model
+
+
+@dataclass(frozen=True)
+class Step:
+    """One round: the model it began with, all trials best first, and what was added.
+
+    None in the last round, and where nothing is left of it beside what later rounds added.
+    """
+
+    model: Model
+    trials: tuple[Trial, ...]
+    added: Trial | None
+    rivals: tuple[Trial, ...]
+    before: dict[str, float]  # scale over noise by family on held-out runs
+    after: dict[str, float]
+
+
+def without(step: Step, gone: Sequence[str], why: str) -> Step:
+    """The round with the trials of some effects refused afterwards, for that reason."""
+    trials = tuple(replace(t, refused=why) if t.name in gone else t for t in step.trials)
+    return replace(step, trials=trials, added=None if step.added and step.added.name in gone else step.added)
+
+
+@dataclass(frozen=True)
+class Found:
+    """The outcome: refitted base, final model, the rounds that led there."""
+
+    base: Model
+    model: Model
+    steps: tuple[Step, ...]
+    interrupted: bool = False

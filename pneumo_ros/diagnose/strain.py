@@ -1,0 +1,64 @@
+"""Effects that base parameters stand in for: the recordings cannot tell, but what is known of those parameters can.
+
+Refitted far from where they are known to be, base parameters do what an effect would do with all of them in their
+places. The way from one to the other is a valley along which predictions hardly change, too bent for one linear step:
+it is followed by fitting all together.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import at_best, relief_of, strain
+from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, log_likelihood
+from pneumo_ros.diagnose.screening import STRAINED
+from pneumo_ros.plant import Model
+
+Array = NDArray[np.float64]
+
+TRIED, PART = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
+FEW = 3  # parameters: a profile can stand in for anything
+ITERATIONS = 12
+
+
+def followed(
+    fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], anyway: float, known: Sequence[str]
+) -> tuple[list[Hypothesis], list[Array]]:
+    """Effects that relieve a strained base in a linear step, fitted with all of it, and their held-out residuals.
+
+    What is `known` to be good is not followed. A step sees but the beginning of the valley: it has to regain a part of
+    the strain only, beyond what the base regains `anyway`.
+    """
+    strained = strain(base.offset)
+    if strained < STRAINED:
+        return [], []
+    best: dict[str, Hypothesis] = {}
+    for h in sorted(screened, key=lambda h: -h.relief):
+        simple = len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates)
+        if simple and h.relief > anyway + PART * strained:
+            best.setdefault(h.name, h)
+    chosen = [h for h in list(best.values())[:TRIED] if h.name not in known]
+    models = [fitter.refit(fitter.extended(base.model, h), ITERATIONS) for h in chosen]
+    found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
+    return [h for h, _ in found], [held for _, held in found]
+
+
+def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[Hypothesis, Array]:
+    """As a trial wants it, and its held-out residual; laws are as free in shape as beside no candidate."""
+    (fit, held), own = fitter.fits(new, fitter.added(base.model)), coordinates(new.library.find(name))
+    shift, after, _value = at_best(fit, fit.residual)
+    offset, bends = base.offset.copy(), slice(len(fit.names) - fit.bends, None)
+    offset[base.own] = (fit.offset + shift)[[fit.names.index(n) for n in base.names[base.own]]]
+    offset[base.own.stop :] = (fit.offset + shift)[bends]
+    columns = [fit.names.index(c.name) for c in own]
+    std = fitter.deviations(new)
+    return Hypothesis(
+        name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, after,
+        likelihood=log_likelihood(fitter.train, after) - strain(offset),
+        t=max(abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size),
+        relief=relief_of(base, offset - base.offset),
+        slopes=fit.slopes[:, columns] / np.array([c.prior for c in own]),
+    ), held.residual + held.slopes @ shift  # fmt: skip

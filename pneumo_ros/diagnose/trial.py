@@ -1,0 +1,132 @@
+"""What speaks for a candidate and what against: everything that has to hold before an effect is added."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.coordinates import Coordinate, is_profile
+from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.measures import equation_helped
+
+Array = NDArray[np.float64]
+
+T_LEAST = 5.0
+GAIN_LEAST = 0.05  # of the mean square of an equation's residual on held-out runs
+Z_LEAST = 2.0  # of that gain over its scatter between blocks of time
+SHARE_LEAST = (0.25, 0.5)  # of what noise does not explain in an equation, that the first and later effects remove
+SPOILED = 0.5  # of its best gain: by no more may another equation get worse, which something else may still bend
+REST_LEAST = 0.025  # of what was left at first: less is how an added effect's shape differs from the machine's
+NEARLY = 0.95  # of what noise does not explain: one effect does not explain the rest of another's shape that well
+RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
+MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a quarter of that, still counts
+MOSTLY = 0.6  # of an equation's mean square, noise and all, on held-out runs
+PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
+SLOW = 10.0
+MECHANICS = ("momentum", "breakaway")  # equations that show a texture of friction
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One candidate on trial: its fit, and what the runs that took no part in it say."""
+
+    hypothesis: Hypothesis
+    held: Array = field(repr=False)  # residual on held-out runs
+    gain: dict[str, float]  # by equation: share of the mean square residual on held-out runs that it removes
+    z: float  # of the loss it removes there, over its scatter between blocks
+    size: float  # in usual ones
+    stable: bool
+    share: float  # of what noise does not explain where it acts in the equation it helps most, on held-out runs
+    first: bool  # whether nothing was added before
+    decoy: float  # the largest t that a copy of its trace shifted in time reaches
+    score: float  # log likelihood over the base, training and held-out runs together
+    usual: dict[str, float] = field(default_factory=dict)  # as `gain`, single wild residuals left out
+    local: float = -np.inf  # the largest gain of an equation where the effect acts in it
+    force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
+    rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
+    lag: float = np.inf  # samples, of an effect that delays
+    quiet: bool = True  # whether no force of size is unexplained: else base parameters may be strained by that
+    refused: str = ""  # why it was taken back after it had been added
+    std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
+    elsewhere: frozenset[str] = frozenset()  # equations that it does not enter
+
+    @property
+    def name(self) -> str:
+        """Catalogue name."""
+        return self.hypothesis.name
+
+    @property
+    def clear(self) -> bool:
+        """Whether it explains nearly all of what noise does not in an equation, or removes most of what is there."""
+        return self.share >= PLAIN or max(self.gain.values(), default=0.0) >= MOSTLY
+
+    @property
+    def slowness(self) -> float:
+        """Largest of its fading time constants in usual ones: unlike forces, times do not grow with a machine."""
+        h = self.hypothesis
+        times = [c for c in h.coordinates if c.is_size and c.name.endswith("time_constant")]
+        return max((h.values[c.name] / c.typical for c in times), default=0.0)
+
+    @property
+    def absorbed(self) -> bool:
+        """Whether base parameters stand in for it: the data do not say, but what is known of those parameters does."""
+        h = self.hypothesis
+        indifferent = all(gain > -GAIN_LEAST for gain in self.gain.values())
+        return self.quiet and indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
+
+    def _data_objections(self) -> list[str]:
+        """What the recordings say against it."""
+        h, found, most = self.hypothesis, list[str](), max(self.local, *self.gain.values())
+        if h.t < T_LEAST:
+            found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
+        elif h.t < 1.5 * self.decoy and self.share < PLAIN:
+            found.append(f"t is {h.t:.1f}, and its trace shifted in time reaches {self.decoy:.1f}")
+        if most < GAIN_LEAST:
+            found.append(f"removes {100.0 * most:.1f} % on held-out runs")
+        elif self.z < Z_LEAST:
+            found.append("its gain on held-out runs is within their scatter")
+        # what explains an equation does no harm where it does not act: parameters that were bent to make up for it do
+        spared = self.elsewhere if self.share >= PLAIN else frozenset()
+        change = {n: max(gain, self.usual.get(n, gain)) for n, gain in self.gain.items() if n not in spared}
+        loss, worst = min(((change[n], n) for n in change), default=(0.0, ""))
+        if loss < -SPOILED * max(most, GAIN_LEAST):
+            found.append(f"makes {worst} {-100.0 * loss:.0f} % worse on held-out runs")
+        alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
+        # along a profile of many sizes any texture can be followed
+        texture = self.force <= 1.0 and is_profile(h.coordinates)
+        if self.share < (PLAIN if texture else SHARE_LEAST[0 if alone else 1]):
+            found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
+        return found
+
+    def _shape_objections(self) -> list[str]:
+        """That it only mends the shape of what was added before, where the data say anything of it."""
+        says = not self.absorbed or max(self.gain.values(), default=0.0) >= GAIN_LEAST
+        if says and self.rest < REST_LEAST and self.share < NEARLY:
+            return [f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect"]
+        return []
+
+    @property
+    def objections(self) -> tuple[str, ...]:
+        """Why it may not be added; empty when it may."""
+        h, found = self.hypothesis, self._shape_objections() + ([] if self.absorbed else self._data_objections())
+        if self.size < MATERIAL:
+            found.append(f"its size is {self.size:.2g} of the usual one")
+        if self.slowness > SLOW:
+            found.append(f"its time constant is {self.slowness:.0f} times the usual one")
+        ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if _at_end(c, float(u))]
+        if ends:
+            found.append(f"{ends[0]} is at the end of its range")
+        if self.lag < 1.0:
+            found.append("its delay is less than a sample, which may be how the recording was timed")
+        if self.refused:
+            found.append(self.refused)
+        if not self.stable:
+            found.append("its size depends on which run is left out")
+        return tuple(found)
+
+
+def _at_end(c: Coordinate, u: float) -> bool:
+    """Whether a parameter sits on a bound, neither neutral nor usual, as one does that stands for something else."""
+    value, margin = c.value(u), 1e-3 * abs(c.typical)
+    near = [end for end in (c.low, c.high) if abs(value - end) <= margin]
+    return bool(near) and near[0] not in (c.neutral, c.typical)

@@ -1,0 +1,80 @@
+"""Breakaways: the force at which a resting piston begins to slide."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.runs.smooth import smooth
+
+Array = NDArray[np.float64]
+
+REST = 0.15  # s at rest before it counts as a breakaway
+_EDGE = 2e-3  # m from the end of the stroke
+_CHUNK = 2000  # samples looked through at a time
+_SLIP = 5.0  # times the largest bristle deflection: certainly sliding
+
+
+@dataclass(frozen=True)
+class Breakaway:
+    """One breakaway: when, in which direction, and the largest force that friction held just before [N]."""
+
+    run: str
+    index: int  # grid point where sliding is certain
+    time: float
+    direction: int
+    force: float
+    ramp: float  # [N/s], how fast the force rose before
+    rest: float  # [s] at rest before
+    slip: float  # [m] from where it rested to where sliding is certain
+
+    @property
+    def spread(self) -> float:
+        """How far the force may be off [N]: a fifth of a newton, and 20 ms of its rise until sliding shows."""
+        return 0.2 + 0.02 * abs(self.ramp)
+
+
+def find_breakaways(model: Model, run: Run) -> list[Breakaway]:
+    """Every breakaway after a rest of at least 0.15 s, away from the ends of the stroke."""
+    deflection = model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
+    slip = _SLIP * deflection + 6.0 * run.noise["position_m"]
+    rest, found, k = max(round(REST / run.sample_time), 2), [], 0
+    force, y = holding_force(model, run), run.position
+    while k + rest < len(y):
+        here = float(np.median(y[k : k + rest]))
+        if np.max(np.abs(y[k : k + rest] - here)) > slip:
+            k += max(rest // 4, 1)
+            continue
+        at = _leaves(y, k + rest, here, slip)
+        if at is None:
+            break
+        if abs(here) < 0.5 * model["piston.stroke"] - _EDGE and run.measured[k : at + 1].all():
+            direction = 1 if y[at] > here else -1
+            before = direction * force[max(at - rest, 0) : at + 1]
+            ramp = float((before[-1] - before[0]) / (len(before) * run.sample_time))
+            rested = (at - k) * run.sample_time
+            time = at * run.sample_time
+            found.append(Breakaway(run.name, at, time, direction, float(before.max()), ramp, rested, slip))
+        k = at
+    return found
+
+
+def _leaves(y: Array, start: int, here: float, slip: float) -> int | None:
+    """First grid point from `start` on that is farther than `slip` from `here`."""
+    for k in range(start, len(y), _CHUNK):
+        away = np.abs(y[k : k + _CHUNK] - here) > slip
+        if away.any():
+            return k + int(np.argmax(away))
+    return None
+
+
+def holding_force(model: Model, run: Run) -> Array:
+    """Force on the piston (n,) [N] without friction and inertia: what friction holds while it rests."""
+    states = np.tile(model.state(), (len(run), 1))
+    states[:, 0] = run.position
+    if not model.force_driven:
+        states[:, 2], states[:, 3] = run.signals["pressure_a_pa"], run.signals["pressure_b_pa"]
+    seen = model.outputs(states, np.append(run.held, run.held[-1]))
+    return smooth(seen["drive"] - seen["force"], run.sample_time, 0.008, 2)

@@ -1,0 +1,180 @@
+"""Equations of motion and of the chambers in weak form over windows: residual, the noise it inherits, where it counts.
+
+Each equation is multiplied by a smooth bump phi(t) = (1 - tau^2)^6 and integrated by parts over a short window:
+
+    momentum:  (1 / I) int (phi'' M y - phi M v'_model) dt   [N]
+    chamber:   (1 / I) int (-phi' L - phi (p'/p + gamma V'/V)_model) dt  p V / (gamma R T)   [kg/s]
+
+with I = int phi and L = ln p + gamma ln V. The chamber's form needs no velocity:
+the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction does, and what the noise of an estimated
+velocity does to it, int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise stated with each residual.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.equations.bump import Bump
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.noise import noise_level
+from pneumo_ros.runs.run import Run
+from pneumo_ros.runs.smooth import smooth
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+SLIDING = 0.01  # m/s: slower, friction is not a function of velocity and the momentum equation says little
+# How coarse sums over samples are, measured on simulations without noise at 50 Hz to 4 kHz; see `Bump.coarseness`
+_MOMENTUM_SUMS, _CHAMBER_SUMS = 0.12, 4.0
+
+
+def centred(mean: Array) -> Array:
+    """Mean derivatives (n, ...) of the intervals on both sides of a sample, from those of the intervals up to each.
+
+    A sum over samples is then the integral, input steps and all.
+    """
+    return np.asarray(0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0)))
+
+
+class Momentum:
+    """The momentum equation of a model along states (n, states) of a run; values in N."""
+
+    def __init__(self, model: Model, run: Run, states: Array) -> None:
+        self.model, self.run = model, run
+        self._steep = sensitivity(model, run, states, model.states.index("v"), 1e-3)[:, model.states.index("v")]
+        held = np.append(run.held, run.held[-1])
+        self._drive = held if model.force_driven else model.effort(states)
+
+    @staticmethod
+    def value(bump: Bump, mass: Array, position: Array, acceleration: Array) -> Array:
+        """Residual (windows,): `mass` (windows,) [kg] moves as measured, and as claimed by `acceleration` (n,)."""
+        return MeasuredMotion.of(bump, position).value(mass, acceleration)
+
+    def noise(self, bump: Bump) -> Array:
+        """Standard deviation (windows,) that sensor noise and sums over samples alone give."""
+        model, run, noise = self.model, self.run, self.run.noise
+        ones = np.ones(len(run))
+        by_position = bump.noise([(bump.second, ones), (bump.first, self._steep)])
+        parts = [noise["position_m"] * model["piston.mass"] * by_position]
+        if model.force_driven:
+            parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
+        else:
+            for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
+                parts.append(noise[name] * model[f"piston.{area}"] * bump.noise([(bump.phi, ones)]))
+        parts.append(bump.coarseness(_MOMENTUM_SUMS) * np.sqrt(bump.apply(bump.phi, self._drive**2)))
+        return np.asarray(np.sqrt(np.sum(np.square(parts), axis=0)))
+
+    def usable(self, bump: Bump) -> Mask:
+        """Windows that slide throughout, measured throughout, away from the ends of the stroke."""
+        run, reach = self.run, 0.5 * self.model["piston.stroke"] - 1e-3
+        slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
+        return _free_of(slow | ~run.measured | (np.abs(run.position) > reach), bump)
+
+
+class Chamber:
+    """The equation of one chamber, "a" or "b", along states (n, states) of a run; values in kg/s."""
+
+    def __init__(self, model: Model, chamber: str) -> None:
+        self.model, self.chamber, self.name = model, chamber, f"p_{chamber}"
+        self.column = model.states.index(self.name)
+        self.gamma = model["air.heat_capacity_ratio"]
+        self._slope = model["piston.area_a"] if chamber == "a" else -model["piston.area_b"]
+
+    def volume(self, position: Array) -> Array:
+        """Volume (n,) [m3]."""
+        return self.model[f"chambers.volume_{self.chamber}"] + self._slope * position
+
+    def value(self, bump: Bump, states: Array, pressure_rate: Array) -> Array:
+        """Residual (windows,), with the pressure derivative (n,) that the model claims along the states."""
+        return self.measured(bump, states).value(pressure_rate)
+
+    def measured(self, bump: Bump, states: Array) -> "MeasuredChamber":
+        """What the residual takes from the states alone."""
+        p = states[:, self.column]
+        log = np.log(p) + self.gamma * np.log(self.volume(states[:, 0]))
+        rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, self._rate(states, np.zeros(len(p))))
+        return MeasuredChamber(bump, self.column, self._content(bump, states), rate, 1.0 / p)
+
+    def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
+        """Standard deviation (windows,) that sensor noise and sums alone give.
+
+        `steep` (n,): derivative of the claimed pressure derivative by the pressure.
+        """
+        noise, p = run.noise, states[:, self.column]
+        by_log = steep / p - pressure_rate / p**2
+        by_volume = self.gamma * self._slope / self.volume(states[:, 0])
+        parts = [
+            noise[f"pressure_{self.chamber}_pa"] * bump.noise([(-bump.first, 1.0 / p), (-bump.phi, by_log)]),
+            noise["position_m"] * bump.noise([(-bump.first, by_volume)]),
+            bump.coarseness(_CHAMBER_SUMS) * np.sqrt(bump.apply(bump.phi, self._rate(states, pressure_rate) ** 2)),
+        ]
+        return np.asarray(self._content(bump, states) * np.sqrt(np.sum(np.square(parts), axis=0)))
+
+    def steepness(self, run: Run, states: Array) -> Array:
+        """Derivative (n,) of the claimed pressure derivative by the pressure [1/s]."""
+        return np.asarray(sensitivity(self.model, run, states, self.column, 100.0)[:, self.column])
+
+    def _rate(self, states: Array, pressure_rate: Array) -> Array:
+        flow = self.gamma * self._slope * states[:, 1] / self.volume(states[:, 0])
+        return np.asarray(pressure_rate / states[:, self.column] + flow)
+
+    def _content(self, bump: Bump, states: Array) -> Array:
+        """Mass per unit of ln p (windows,) [kg]."""
+        R_T = self.model["air.gas_constant"] * self.model["air.temperature"]
+        return bump.apply(bump.phi, states[:, self.column] * self.volume(states[:, 0]) / (self.gamma * R_T))
+
+
+@dataclass(frozen=True)
+class MeasuredMotion:
+    """What measurements say of the motion in windows, whatever a model claims; acceleration (windows,) [m/s2]."""
+
+    bump: Bump
+    acceleration: Array
+
+    @classmethod
+    def of(cls, bump: Bump, position: Array) -> "MeasuredMotion":
+        """From a position (n,) [m]."""
+        return cls(bump, bump.apply(bump.second, position))
+
+    def value(self, mass: Array, acceleration: Array) -> Array:
+        """Residual (windows,) [N] of `mass` (windows,) [kg], with the acceleration (n,) that a model claims."""
+        return np.asarray(mass * (self.acceleration - self.bump.apply(self.bump.phi, acceleration)))
+
+
+@dataclass(frozen=True)
+class MeasuredChamber:
+    """What measurements say of a chamber in windows, whatever a model claims.
+
+    column: of its pressure among the states; content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow
+    per content [1/s]; per_pressure (n,): 1 / p [1/Pa].
+    """
+
+    bump: Bump
+    column: int
+    content: Array
+    rate: Array
+    per_pressure: Array
+
+    def value(self, pressure_rate: Array) -> Array:
+        """Residual (windows,) [kg/s], with the pressure derivative (n,) that a model claims."""
+        claimed = self.bump.apply(self.bump.phi, pressure_rate * self.per_pressure)
+        return np.asarray(self.content * (self.rate - claimed))
+
+
+def measured_throughout(run: Run, bump: Bump) -> Mask:
+    """Windows without a gap in the recording."""
+    return _free_of(~run.measured, bump)
+
+
+def sensitivity(model: Model, run: Run, states: Array, column: int, probe: float) -> Array:
+    """Change of all derivatives (n, states) per unit of the state in `column`."""
+    held = np.append(run.held, run.held[-1])
+    pushed = states.copy()
+    pushed[:, column] += probe
+    change = model.derivatives(pushed, held, run.time) - model.derivatives(states, held, run.time)
+    return np.asarray(change / probe)
+
+
+def _free_of(bad: Mask, bump: Bump) -> Mask:
+    return np.asarray(bump.apply(np.ones(bump.width), bad.astype(float)) < 0.5)

@@ -1,0 +1,102 @@
+"""First guesses of the state along a recording, before any simulation is fitted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run, check_position
+from pneumo_ros.runs.sensors import driven
+from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain, smooth
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+# N, how far the balance of forces may be off: a piston that has just stopped rings on its bristle (84 Hz on the default
+# machine) with tens of newtons, which +-12 ms smooth away
+_FORCE = 10.0
+# of how much a state varies that no sensor shows: how far what is driven along may be off
+_UNSURE = 0.3
+
+
+def measured_frame(run: Run, force_driven: bool) -> Array:
+    """Measured position and pressures with the smoothed velocity (n, 4); (n, 2) of a force-driven axis."""
+    frame: Array = run.smoothed.frame[:, : 2 if force_driven else 4].copy()
+    for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
+        if column < frame.shape[1]:
+            frame[:, column] = signal
+    return frame
+
+
+@dataclass(frozen=True)
+class Guess:
+    """First guesses at some grid points of a run (points, states), and their standard deviations (states,)."""
+
+    states: Array
+    scale: Array
+
+
+def first_guess(model: Model, run: Run, at: Index) -> Array:
+    """States (len(at), states) of `guess_states`."""
+    return guess_states(model, run, at).states
+
+
+def guess_states(model: Model, run: Run, at: Index) -> Guess:
+    """States at grid points `at`: measured ones smoothed, others driven along, bristles by balance of forces.
+
+    What sensors read is corrected for the model's sensor effects. Raises DataError when the run leaves the stroke of
+    the model.
+    """
+    check_position(model, run)
+    guess = run.smoothed
+    frame = guess.frame[:, : 2 if model.force_driven else 4]
+    states, _ = driven(model, frame, run)
+    chosen: Array = states[at]
+    if "z" in model.states:
+        acceleration: Array = guess.acceleration[at]
+        if not model.composition.true_sensors:
+            acceleration += smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)[at]
+        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], acceleration)
+    return Guess(chosen, _scale(model, run, states, frame))
+
+
+def _balance(model: Model, states: Array, held: Array, acceleration: Array) -> None:
+    """Set the bristle deflection so that the model's acceleration is the measured one (two secant steps)."""
+    z, v = model.states.index("z"), model.states.index("v")
+    probe = 1e-6
+    for _ in range(2):
+        shifted = states.copy()
+        shifted[:, z] += probe
+        here, there = (model.derivatives(x, held)[:, v] for x in (states, shifted))
+        slope = (there - here) / probe
+        states[:, z] += np.where(slope != 0.0, (acceleration - here) / np.where(slope == 0.0, 1.0, slope), 0.0)
+    limit = _deflection_limit(model)
+    states[:, z] = np.clip(states[:, z], -limit, limit)
+
+
+def _deflection_limit(model: Model) -> float:
+    section = "lugre_friction"
+    return model[f"{section}.static_friction"] / model[f"{section}.bristle_stiffness"]
+
+
+def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
+    """Standard deviation (states,) of each state about its first guess; of the measured ones, of what sensors read."""
+    noise = run.noise
+    with np.errstate(over="ignore", invalid="ignore"):
+        scale: Array = np.maximum(np.nan_to_num(_UNSURE * np.std(states, axis=0), posinf=1.0), 1e-9)
+        late = _UNSURE * np.std(states[:, 1] - frame[:, 1])
+    for name, column in measured_columns(model).items():
+        scale[column] = 3.0 * noise[name]
+    scale[1] = 3.0 * noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1) + 1e-4 + late
+    if "z" in model.states:
+        stiffness = model["lugre_friction.bristle_stiffness"]
+        scale[model.states.index("z")] = _FORCE / stiffness
+        scale[1] += _FORCE / np.sqrt(stiffness * model["piston.mass"])  # of a ring with that force
+    return scale
+
+
+def measured_columns(model: Model) -> dict[str, int]:
+    """Which state each measured signal shows, by report name; pressures only where the model has chambers."""
+    shown = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
+    return {name: model.states.index(state) for name, state in shown.items() if state in model.states}

@@ -1,0 +1,168 @@
+"""Parts of a run in which nothing happens that should: a piston that is stuck, a sensor that hangs, dead commands.
+
+All of them leave a run usable, so they are notes, but for a pressure sensor that shows no motion at all.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.noise import noise_level, resolution
+from pneumo_ros.runs.run import Run
+
+Array = NDArray[np.float64]
+
+LONG = 5.0  # s: a running axis waits shorter for its breakaway, but for voltages at the edge of the dead zone
+_BLOCK = 0.05  # s
+_STILL = 1e-4  # m that bristles and noise move a piston at rest
+# times what fills a chamber from the atmosphere to the supply: 0.3 breaks a piston away, but a valve that is off by
+# 0.3 V lets 0.13 pass in each second without the model's knowing
+_FILLS, _LATER, _FEWER = 1.2, 8.0, 0.6  # after LONG, and after so many s
+_EDGE = 2e-3  # m from the end of the stroke
+_HANGS, _SLOWEST = 1.0, 5e-3  # s of one value where noise would change it; s between samples that tell noise apart
+_TRAVEL = 0.05  # m both ways
+_FLAT = 1.5  # noise deviations that a pressure sensor shows although nothing reaches it
+_UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}
+_TOPICS = {"position_m": "the position", "pressure_a_pa": "chamber_a/pressure", "pressure_b_pa": "chamber_b/pressure"}
+
+
+def idle_notes(model: Model, run: Run) -> list[str]:
+    """Sentences on parts of `run` in which nothing happens that should. Raises DataError for a dead pressure sensor."""
+    _check_alive(run)
+    hung = {name: found for name, signal in run.signals.items() if (found := _hung(run, signal))}
+    notes = [
+        f"{_TOPICS[name]} repeats {run.signals[name][start]:.6g} {_UNITS[name]} without any noise "
+        f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
+        for name, (start, stop) in hung.items()
+    ]
+    return [*notes, *_rests(model, run, *hung.get("position_m", (0, 0))), *_commands(run)]
+
+
+def _check_alive(run: Run) -> None:
+    """Raises DataError for a pressure that does not change, or shows noise alone, while the piston travels."""
+    noise, (out, back) = run.noise, _travel(run, 0)
+    for name, signal in run.signals.items():
+        fixed = np.ptp(signal) == 0.0 and max(out, back) > _TRAVEL
+        # A steady motion one way leaves pressures alone; nobody comes back without changing them.
+        flat = np.std(signal) < _FLAT * noise[name] and min(out, back) > _TRAVEL
+        if name != "position_m" and (fixed or flat):
+            raise DataError(
+                f"{run.name}: {_TOPICS[name]} stays at {signal.mean():.6g} Pa, within {np.ptp(signal):.3g} Pa of "
+                f"noise, while the piston travels {out:.3g} m out and {back:.3g} m back: its sensor is dead or not "
+                "connected; look at its plug and hose, and record again"
+            )
+
+
+def _hung(run: Run, signal: Array) -> tuple[int, int] | None:
+    """Start and stop of the longest stretch in which a signal repeats one value, although it has noise elsewhere."""
+    changes = np.concatenate([[0], np.flatnonzero((np.diff(signal) != 0.0) | ~run.measured[1:]) + 1, [len(run)]])
+    longest = int(np.argmax(np.diff(changes)))
+    start, stop = int(changes[longest]), int(changes[longest + 1])
+    if (stop - start) * run.sample_time < _HANGS or run.sample_time > _SLOWEST or stop - start == len(run):
+        return None
+    rest = np.delete(signal, slice(start, stop))
+    floor = max(resolution(rest) / np.sqrt(12.0), 1e-6 * float(np.ptp(rest)))  # of a signal without noise
+    return (start, stop) if noise_level(rest) > 1.5 * floor else None
+
+
+def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
+    """Rests that are longer than a piston waits for its breakaway; a piston that never moves.
+
+    Between the samples `since` and `until` the position is known to hang.
+    """
+    width = min(max(round(_BLOCK / run.sample_time), 1), len(run))
+    still = _STILL + 6.0 * run.noise["position_m"]
+    blocks = run.position[: len(run) // width * width].reshape(-1, width).mean(axis=1)
+    if np.ptp(blocks) < still:
+        yield (
+            f"the piston does not move: its position stays at {np.mean(blocks):.4g} m within "
+            f"{1e3 * np.ptp(blocks):.2g} mm for {run.time[-1]:.3g} s, so friction cannot be judged; if it did move, "
+            "look at the position sensor"
+        )
+        return
+    for first, last in _quiet(blocks, still):
+        start, stop = first * width, last * width
+        hangs = min(stop, until) - max(start, since) > 0.8 * (stop - start)
+        if hangs or (stop - start) * run.sample_time < LONG:
+            continue
+        if why := _pushed(model, run, start, stop):
+            yield (
+                f"the piston does not move {_span(run, start, stop)}, at {run.position[start]:.4g} m, although {why}: "
+                "it is stuck or held by something that the model lacks, or its position sensor hangs, or the valve "
+                "does not open as in the model; this part is used like the rest"
+            )
+
+
+def _quiet(blocks: Array, still: float) -> Iterator[tuple[int, int]]:
+    """Stretches (first, last + 1) of block means that stay within `still`, one after another."""
+    first, low, high = 0, np.inf, -np.inf
+    for at, value in enumerate([*blocks.tolist(), np.inf]):
+        low, high = min(low, value), max(high, value)
+        if high - low > still:
+            yield first, at
+            first, low, high = at, value, value
+
+
+def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
+    """What should have moved the piston during a rest, in words; empty when there is nothing."""
+    if abs(run.position[start]) > 0.5 * model["piston.stroke"] - _EDGE:
+        return ""
+    static = model.parameters.get("lugre_friction.static_friction", np.inf)
+    force = _force(model, run)[start:stop]
+    pushing = float(np.sum(np.abs(force) > 1.5 * static)) * run.sample_time
+    if pushing > 0.5 * LONG:
+        return f"{np.max(np.abs(force)):.3g} N push it, against {static:.3g} N of static friction"
+    fewest = _FILLS if (stop - start) * run.sample_time < _LATER else _FEWER
+    if not model.force_driven and (fills := _fills(model, run, start, stop)) > fewest:
+        return f"the valve lets pass {fills:.1f} times what fills a chamber"
+    return ""
+
+
+def _force(model: Model, run: Run) -> Array:
+    """Driving force (n,) [N]."""
+    if model.force_driven:
+        return np.append(run.held, run.held[-1])
+    states = np.tile(model.state(), (len(run), 1))
+    states[:, 2], states[:, 3] = run.pressure_a, run.pressure_b
+    return model.effort(states)
+
+
+def _fills(model: Model, run: Run, start: int, stop: int) -> float:
+    """How often the valve would fill the larger chamber, and empty the other, at half the supply's pressure in both."""
+    supply, atmosphere = model["air.supply_pressure"], model["air.atmospheric_pressure"]
+    half, y = 0.5 * (supply + atmosphere), float(run.position[start])
+    states = np.tile(model.state(y=y, p_a=half, p_b=half), (stop - start, 1))
+    seen = model.outputs(states, np.append(run.held, run.held[-1])[start:stop], sample_time=run.sample_time)
+    passed = np.cumsum(seen["port_flow_a"] - seen["port_flow_b"]) * 0.5 * run.sample_time
+    a, b = (
+        model["chambers.volume_a"] + model["piston.area_a"] * y,
+        model["chambers.volume_b"] - model["piston.area_b"] * y,
+    )
+    gas = model["air.gas_constant"] * model["air.temperature"]
+    return float(np.ptp(passed)) * gas / ((supply - atmosphere) * max(a, b))
+
+
+def _commands(run: Run) -> Iterator[str]:
+    """Whether the piston goes to and fro after the last change of the command."""
+    changes = np.flatnonzero(np.diff(run.held)) + 1
+    last = int(changes[-1]) if len(changes) else 0
+    out, back = _travel(run, last)
+    if min(out, back) > _TRAVEL and not run.force_driven:
+        when = f"after {run.time[last]:.3f} s" if last else "at all"
+        yield (
+            f"valve/command does not change {when}, held at {run.held[-1]:.4g} V, while the piston travels {out:.3g} m "
+            f"out and {back:.3g} m back: it may not be what drives the valve; flows and pressures cannot be judged then"
+        )
+
+
+def _travel(run: Run, since: int) -> tuple[float, float]:
+    """How far the piston travels out and back [m] from the sample `since` on."""
+    steps = np.diff(run.position[since :: max(round(2.0 * _BLOCK / run.sample_time), 1)])
+    return float(steps[steps > 0.0].sum()), float(-steps[steps < 0.0].sum())
+
+
+def _span(run: Run, start: int, stop: int) -> str:
+    return f"for {(stop - start) * run.sample_time:.1f} s from {run.time[start]:.3f} s on"

@@ -1,0 +1,159 @@
+"""Whether a run can be what it says it is: mistakes of wiring, signs and gauge pressures, which the model tells apart.
+
+Each mistake is undone on trial. When that makes the residuals of the equations several times smaller, it was made: no
+effect that a model may lack does the same (see the tests, which hide every known one).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pneumo_ros.equations.weak import equation_residuals
+from pneumo_ros.errors import DataError
+from pneumo_ros.plant import Model
+from pneumo_ros.reading.idle import idle_notes
+from pneumo_ros.runs.run import Run
+
+_GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
+_GROWS = 1.5  # times larger residuals of a chamber, that disprove it: hidden friction or a closed valve looked like it
+_POOR = 0.2  # share of a signal's size from which on a residual is worth asking what is wrong
+_MOVES = 0.01  # m, without which leaks look like an exchange or a reversal
+_VENTED = 0.5  # of the atmosphere's pressure: no running axis has an emptier chamber
+_BLOCK = 0.05  # s
+_UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
+
+
+@dataclass(frozen=True)
+class _Mistake:
+    """How a run looks when the mistake is undone, what it is, and what to do about it."""
+
+    undo: Callable[[Run], Run]
+    what: str
+    word: str
+    mend: str
+
+
+def check_run(model: Model, run: Run) -> list[str]:
+    """Sentences on what `run` can still be used with: a piston that is stuck, a sensor that hangs, dead commands.
+
+    Raises DataError when the run leaves the stroke of `model`, a sensor is dead, or `model` finds that chambers,
+    position or voltage are the wrong way round, or pressures gauge ones.
+    """
+    notes = idle_notes(model, run)
+    found = _mistake(model, run)
+    if found is not None:
+        raise DataError(found)
+    return notes
+
+
+def _mistake(model: Model, run: Run) -> str | None:
+    """The sentence for the mistake that explains the residuals best; None when there is none."""
+    recorded = _residuals(model, run)
+    low = _lowest(run)
+    vented = not model.force_driven and low < 0.95 * model["air.atmospheric_pressure"]
+    if not vented and not _poor(model, run, recorded):
+        return None
+    moves = np.ptp(run.position) > _MOVES
+    possible = [mistake for mistake in _mistakes(model) if moves or mistake.word == "gauge"]
+    if not possible:
+        return None
+    tried = {mistake: _residuals(model, mistake.undo(run)) for mistake in possible}
+    gains = {mistake: _gain(recorded, undone) for mistake, undone in tried.items()}
+    best = max(gains, key=lambda mistake: gains[mistake])
+    empty = best.word == "gauge" and low < _VENTED * model["air.atmospheric_pressure"]
+    if gains[best] < (1.0 if empty else _GAIN):
+        return None
+    reading = f"; a vented chamber reads {1e-3 * low:.3g} kPa" if best.word == "gauge" else ""
+    return (
+        f"{run.name}: {best.what}{reading}. As recorded, '{model.name}' leaves unexplained {_sizes(recorded)}; read "
+        f"the other way, {_sizes(tried[best])}. Type --read-as {best.word}, or {best.mend}"
+    )
+
+
+def _mistakes(model: Model) -> list[_Mistake]:
+    """What may be wrong with a recording of this kind of axis."""
+    reversed_position = _Mistake(
+        lambda run: replace(run, position=-run.position),
+        "the position seems to count the wrong way; it grows when the rod extends",
+        "reversed-position",
+        "change the sign where the position is published",
+    )
+    if model.force_driven:
+        return [reversed_position]
+    rise = model["air.atmospheric_pressure"]
+    return [
+        _Mistake(
+            lambda run: replace(run, pressure_a=run.pressure_b, pressure_b=run.pressure_a),
+            "chamber_a/pressure and chamber_b/pressure seem to be exchanged; chamber a grows when the rod extends",
+            "swapped-chambers",
+            "exchange the two topics, or the sensors' plugs, where they are published",
+        ),
+        _Mistake(
+            lambda run: _raised(run, rise),
+            "the pressures seem to be gauge pressures, not absolute ones",
+            "gauge",
+            f"add the atmosphere's {rise:.6g} Pa where they are published",
+        ),
+        reversed_position,
+        _Mistake(
+            lambda run: replace(run, input=-run.input),
+            "valve/command seems to have the wrong sign; a positive voltage fills chamber a",
+            "reversed-voltage",
+            "change the sign where the command is recorded",
+        ),
+    ]
+
+
+def _residuals(model: Model, run: Run) -> dict[str, float]:
+    """Root mean square of the residual of each equation that can be judged."""
+    found = {name: residual.rms for name, residual in equation_residuals(model, run).items()}
+    return {name: rms for name, rms in found.items() if np.isfinite(rms) and rms > 0.0}
+
+
+def _gain(recorded: dict[str, float], undone: dict[str, float]) -> float:
+    """How many times smaller the residuals become, geometric mean over the equations; 0 when a chamber's grows."""
+    both = [name for name in recorded if name in undone]
+    if not both or any(undone[name] > _GROWS * recorded[name] for name in both if name != "momentum"):
+        return 0.0
+    return float(np.exp(np.mean([np.log(recorded[n] / undone[n]) for n in both])))
+
+
+def _poor(model: Model, run: Run, recorded: dict[str, float]) -> bool:
+    """Whether a residual is a good part of what its equation is about: the drive force, or the flow into a chamber."""
+    return any(rms > _POOR * _size(model, run, name) for name, rms in recorded.items())
+
+
+def _size(model: Model, run: Run, equation: str) -> float:
+    """Root mean square of the drive force [N], or of the mass flow into a chamber [kg/s]."""
+    if model.force_driven:
+        return float(np.sqrt(np.mean(run.held**2)))
+    if equation == "momentum":
+        states = np.tile(model.state(), (len(run), 1))
+        states[:, 2], states[:, 3] = run.pressure_a, run.pressure_b
+        return float(np.sqrt(np.mean(model.effort(states) ** 2)))
+    slope = model["piston.area_a"] if equation == "chamber_a" else -model["piston.area_b"]
+    pressure = run.signals[f"pressure_{equation[-1]}_pa"]
+    content = pressure * (model[f"chambers.volume_{equation[-1]}"] + slope * run.position)
+    content /= model["air.gas_constant"] * model["air.temperature"]
+    width = min(max(round(_BLOCK / run.sample_time), 1), len(run) // 2)
+    means = content[: len(content) // width * width].reshape(-1, width).mean(axis=1)
+    return float(np.sqrt(np.mean(np.diff(means) ** 2))) / (width * run.sample_time)
+
+
+def _lowest(run: Run) -> float:
+    """The lowest pressure of both chambers [Pa], but for the lowest hundredth of the samples."""
+    both = [np.percentile(p, 1) for p in (run.pressure_a, run.pressure_b) if p is not None]
+    return float(min(both, default=np.inf))
+
+
+def _raised(run: Run, rise: float) -> Run:
+    a, b = (None if pressure is None else pressure + rise for pressure in (run.pressure_a, run.pressure_b))
+    return replace(run, pressure_a=a, pressure_b=b)
+
+
+def _sizes(residuals: dict[str, float]) -> str:
+    """Residuals in words."""
+    return ", ".join(
+        f"{_UNITS[name][1] * rms:.2g} {_UNITS[name][0]} ({name.replace('_', ' ')})" for name, rms in residuals.items()
+    )

@@ -1,0 +1,124 @@
+"""A recording laid on a uniform time grid, as the integrator and the estimators want it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.plant import Model
+from pneumo_ros.records import Recording
+from pneumo_ros.records.unfit import check_use
+from pneumo_ros.runs.noise import noise_level
+from pneumo_ros.runs.smooth import Smoothed, smoothed
+
+Array = NDArray[np.float64]
+
+PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
+_GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
+_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # no sensor of such a machine is better
+_MILLIMETRES = 20.0  # half strokes: farther, positions are in mm, or in nothing at all
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording on a grid of n points, `sample_time` apart. Arrays are (n,), SI units, unless said otherwise."""
+
+    name: str
+    sample_time: float  # [s]
+    position: Array
+    pressure_a: Array | None
+    pressure_b: Array | None
+    input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
+    measured: NDArray[np.bool_]  # false inside gaps
+    force_driven: bool
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @cached_property
+    def time(self) -> Array:
+        """Grid times [s]."""
+        return np.asarray(np.arange(len(self)) * self.sample_time, dtype=np.float64)
+
+    @cached_property
+    def held(self) -> Array:
+        """(n - 1,) input over each interval, the mean of its parts."""
+        return np.asarray(self.input.reshape(-1, PARTS).mean(axis=1))
+
+    @cached_property
+    def force(self) -> Array:
+        """(n - 1,) driving force [N] at the samples; meaningful when force-driven, where it is linear in between."""
+        first, second = self.input[::PARTS], self.input[1::PARTS]
+        return np.asarray(1.5 * first - 0.5 * second)
+
+    @property
+    def signals(self) -> dict[str, Array]:
+        """The measured signals by their name in reports: position_m, pressure_a_pa and pressure_b_pa."""
+        every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
+        return {name: signal for name, signal in every.items() if signal is not None}
+
+    @cached_property
+    def noise(self) -> dict[str, float]:
+        """Noise level of every measured signal, by its report name; at least 10 nm and 1 Pa, for simulations."""
+        return {name: max(noise_level(signal), _FINEST[name]) for name, signal in self.signals.items()}
+
+    @cached_property
+    def smoothed(self) -> Smoothed:
+        """Velocity and acceleration, and the measured states they go with, smoothed."""
+        return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
+
+
+def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
+    """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
+
+    `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, sampled too
+    slowly, or holds no pressures, no absolute ones or no input for the kind asked for.
+    """
+    time = recording.time
+    driven = recording.force_driven if force_driven is None else force_driven
+    check_use(recording, driven)
+    counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
+    intervals = int(counts.sum())
+    step = float((time[-1] - time[0]) / intervals)
+    grid = time[0] + step * np.arange(intervals + 1)
+    nearest = np.minimum(np.searchsorted(time, grid), len(time) - 1)
+    distance = np.minimum(np.abs(time[nearest] - grid), np.abs(time[np.maximum(nearest - 1, 0)] - grid))
+
+    def lay(signal: Array | None) -> Array | None:
+        return None if signal is None else np.interp(grid, time, signal)
+
+    position = lay(recording.position)
+    assert position is not None
+    cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
+    held = np.interp(cells, time, _array(recording.effort)) if driven else _commands_at(recording, cells)
+    return Run(
+        recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
+        distance < _GAP * step, driven,
+    )  # fmt: skip
+
+
+def _array(signal: Array | None) -> Array:
+    assert signal is not None
+    return signal
+
+
+def check_position(model: Model, run: Run) -> None:
+    """Raises DataError when a run leaves the stroke of `model` by more than a stop can give way."""
+    reach = 0.5 * model["piston.stroke"]
+    farthest = int(np.argmax(np.abs(run.position)))
+    most = abs(run.position[farthest])
+    if most > 1.05 * reach:
+        unit = "; if it is in mm, type --read-as mm" if _MILLIMETRES * reach < most < 1050.0 * reach else ""
+        raise DataError(
+            f"{run.name}: the position is {run.position[farthest]:.4g} m at {run.time[farthest]:.3f} s, outside the "
+            f"stroke of {model.name}, {-reach:g} to {reach:g} m{unit}; positions are in m from mid stroke, and the "
+            "machine file sets piston.stroke"
+        )
+
+
+def _commands_at(recording: Recording, times: Array) -> Array:
+    """The command in force at each time: the last one recorded before it, the first one before that."""
+    when, value = _array(recording.command_time), _array(recording.command)
+    return value[np.maximum(np.searchsorted(when, times, side="right") - 1, 0)]

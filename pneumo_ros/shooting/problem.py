@@ -1,0 +1,161 @@
+"""The least squares of multiple shooting: residuals of all segments, their linearisation and the step it asks for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model
+from pneumo_ros.shooting.robust import huber_loss, huber_weight
+from pneumo_ros.shooting.segments import PROBE, Segments
+
+Array = NDArray[np.float64]
+
+TAIL = 4.0  # noise deviations: beyond, errors count less than squared
+_BENT = 5e-3  # share of what noise does not explain: gain worth a step of a model that lacks something
+_LANES = 1024  # at once: more take memory, not time
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """What is fitted: free parameters by name with the values (free,) they begin at, priors about `centre`, bounds."""
+
+    names: tuple[str, ...]
+    begin: Array
+    centre: Array
+    prior: Array  # standard deviations
+    low: Array
+    high: Array
+
+    def steps(self, theta: Array) -> Array:
+        """Finite-difference steps: a hundredth of the prior, away from a bound and never across the other."""
+        steps = np.minimum(1e-2 * self.prior, 0.5 * (self.high - self.low))
+        return np.where(theta + steps > self.high, -steps, steps)
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Linearised, per segment: normal matrix and gradient of the parameters, in priors, with the starts eliminated."""
+
+    matrix: Array  # (segments, free, free)
+    gradient: Array  # (segments, free)
+    starts: Array  # (segments, states, states), damped
+    cross: Array  # (segments, free, states)
+    slope: Array  # (segments, states)
+    settling: Array  # (segments,) gain in cost promised by the starts alone
+
+
+class Problem:
+    """One model, its unknowns and segments."""
+
+    def __init__(self, model: Model, unknowns: Unknowns, segments: Segments, threads: int) -> None:
+        self.model, self.unknowns, self.segments, self.threads = model, unknowns, segments, threads
+        self.coarse = segments.coarser()
+        self.columns = [list(model.parameters).index(name) for name in unknowns.names]
+        self.active = np.ones(len(segments), dtype=bool)
+        count, n = segments.measured[0].size, segments.guess.shape[1]
+        self.tail = np.append(np.full(count, TAIL), np.full(n, np.inf))  # distances from guesses count squared
+
+    def begin_cost(self, states: Array) -> float:
+        """Cost at the parameters begun with."""
+        return self.total(self.residuals(states, self.unknowns.begin), self.unknowns.begin)
+
+    def with_values(self, theta: Array) -> Model:
+        """The model with values (free,) of what is fitted."""
+        return self.model.with_parameters(dict(zip(self.unknowns.names, theta.tolist(), strict=True)))
+
+    def slack(self, cost: float) -> float:
+        """Gain in cost not worth a step where a model lacks something: its valley is rough and has no sharp end."""
+        noise = 0.5 * float(np.sum(self.segments.weight[self.active] > 0.0))
+        return _BENT * max(cost - 1.1 * noise, 0.0)
+
+    # --- residuals --------------------------------------------------------------------------------------------------
+
+    def parameters(self, theta: Array) -> Array:
+        """Parameter vectors (copies, parameters) for values (copies, free)."""
+        values = np.tile(self.model.values, (len(theta), 1))
+        values[:, self.columns] = theta
+        return values
+
+    def residuals(self, states: Array, theta: Array, segments: Segments | None = None) -> Array:
+        """Whitened errors, then distances of the starts from their guesses (segments, residuals)."""
+        return np.asarray(self.lanes(segments or self.segments, states, theta[None])[0])
+
+    def lanes(self, segments: Segments, states: Array, theta: Array) -> Array:
+        """Residuals (copies, segments, residuals) of copies of all segments, with values (copies, free)."""
+        parameters = np.repeat(self.parameters(theta), len(segments), axis=0)
+        errors = segments.residuals(self.model, states, parameters, self.threads)
+        return np.concatenate([errors, segments.from_guess(self.model, states, parameters)], axis=2)
+
+    def losses(self, residuals: Array) -> Array:
+        """Loss (segments,) of whitened errors and of distances from guesses."""
+        return np.asarray(np.sum(huber_loss(residuals, self.tail), axis=1))
+
+    def total(self, residuals: Array, theta: Array) -> float:
+        """Cost: losses of the segments that count, and what the priors say of the parameters."""
+        moved = (theta - self.unknowns.centre) / self.unknowns.prior
+        return float(np.sum(self.losses(residuals)[self.active]) + 0.5 * np.sum(moved**2))
+
+    # --- linearisation ----------------------------------------------------------------------------------------------
+
+    def jacobian(self, states: Array, theta: Array) -> Array:
+        """Derivatives (segments, states + free, residuals) by starts in scales and by parameters in priors."""
+        steps, (count, n) = self.unknowns.steps(theta), states.shape
+        values = np.concatenate([np.tile(theta, (n + 1, 1)), theta + np.diag(steps)])
+        moved = np.concatenate([states, self.segments.probes(states), np.tile(states, (len(theta), 1))])
+        lanes = moved.reshape(len(values), count, n)
+        scale = np.concatenate([np.full(n, 1.0 / PROBE), self.unknowns.prior / steps])
+        base = self.lanes(self.coarse, states, theta[None])[0]
+        jacobian = np.empty((count, len(scale), base.shape[1]))
+        each = max(_LANES // count, 1)
+        for first in range(1, len(values), each):
+            part = slice(first, first + each)
+            found = self.lanes(self.coarse, lanes[part].reshape(-1, n), values[part])
+            for j, residuals in enumerate(found, first - 1):
+                jacobian[:, j] = (residuals - base) * scale[j]
+        return jacobian
+
+    def equations(self, states: Array, theta: Array, residuals: Array) -> Equations:
+        """Linearised at starts and parameters, weighted as the residuals there deserve."""
+        n, active = states.shape[1], self.active[:, None]
+        jacobian = self.jacobian(states, theta)
+        weight = huber_weight(residuals, self.tail)
+        weight[:, :-n] *= active  # starts of segments left out go where they were guessed
+        jacobian[:, n:] *= active[..., None]
+        weighted = jacobian * weight[:, None]
+        normal = weighted @ np.swapaxes(jacobian, 1, 2)
+        gradient = (weighted @ residuals[..., None])[..., 0]
+        starts, cross, slope = normal[:, :n, :n], normal[:, n:, :n], gradient[:, :n]
+        right = np.concatenate([np.swapaxes(cross, 1, 2), slope[..., None]], axis=2)
+        solved = np.linalg.solve(starts, right)
+        return Equations(
+            normal[:, n:, n:] - cross @ solved[..., :-1],
+            gradient[:, n:] - (cross @ solved[..., -1:])[..., 0],
+            starts, cross, slope, 0.5 * np.sum(slope * solved[..., -1], axis=1),
+        )  # fmt: skip
+
+    def promise(self, theta: Array, equations: Equations) -> float:
+        """Gain in cost that the linearisation promises of the next step (half the Newton decrement)."""
+        slope = equations.gradient.sum(0) + (theta - self.unknowns.centre) / self.unknowns.prior
+        return float(-0.5 * slope @ self.move(theta, equations, 0.0))
+
+    def move(self, theta: Array, equations: Equations, damping: float) -> Array:
+        """Damped step (free,) in priors, at most one of them each, that ends within the bounds.
+
+        What would go farther is put there, and the others are solved for again.
+        """
+        u = self.unknowns
+        total = equations.matrix.sum(0) + np.eye(len(theta))
+        slope = equations.gradient.sum(0) + (theta - u.centre) / u.prior
+        total += damping * np.diag(np.diag(total))
+        low, high = np.maximum((u.low - theta) / u.prior, -1.0), np.minimum((u.high - theta) / u.prior, 1.0)
+        move, held = np.zeros(len(theta)), np.zeros(len(theta), dtype=bool)
+        while True:
+            free = ~held
+            right = slope[free] + total[np.ix_(free, held)] @ move[held]
+            move[free] = -np.linalg.solve(total[np.ix_(free, free)], right)
+            across = free & ((move < low) | (move > high))
+            if not across.any():
+                return move
+            move[across] = np.clip(move, low, high)[across]
+            held |= across

@@ -1,0 +1,125 @@
+"""Refit of a whole model to recordings by multiple shooting (Bock 1983).
+
+Every run is cut into segments whose initial states are free; each segment is simulated from its own start, and all
+starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. The few
+segments that fit far worse than the rest, breakaways caught in the wrong moment, are left out. The starts are
+eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all perturbed
+simulations of one iteration run as lanes.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from pneumo_ros.errors import DataError, UsageError
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.approach import approach
+from pneumo_ros.shooting.estimates import Estimate, Refit, estimates
+from pneumo_ros.shooting.problem import Unknowns
+from pneumo_ros.shooting.segments import Segments, cut
+from pneumo_ros.shooting.shooting import Progress, Shooting
+
+__all__ = ["Estimate", "Refit", "default_free", "refit", "refit_segments"]
+
+
+SEGMENT = 0.5  # s
+PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
+
+# What a scale, a ruler or a table tells better than a motion: fixed unless asked for.
+FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
+FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
+
+
+def default_free(model: Model) -> tuple[str, ...]:
+    """Parameters a refit lets move: all but mass, geometry, gas, end stops and what presliding alone shows."""
+    return tuple(
+        name for name in model.parameters if name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED
+    )
+
+
+def refit(
+    model: Model,
+    runs: Sequence[Run],
+    *,
+    free: Sequence[str] | None = None,
+    priors: Mapping[str, float] | None = None,
+    segment: float = SEGMENT,
+    share: float = 1.0,
+    start: Refit | None = None,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Refit:
+    """Refit `free` parameters (default `default_free`) of a model to all runs together.
+
+    `priors` maps dotted names to standard deviations in the parameter's unit (default `default_prior`). `segment` [s]
+    is the length of the shooting segments, `share` how many of them are used, evenly drawn. With `start`, an earlier
+    refit to the same runs and `segment`, parameters begin where it ended, and keep the priors they had there unless
+    others are given; a few iterations then tell what another effect changes. Raises UsageError for unknown names,
+    DataError when no run holds a segment, NumericalError when no prediction is finite.
+    """
+    names = default_free(model) if free is None else tuple(free)
+    segments = cut(model, runs, segment)
+    return refit_segments(
+        model, segments, names, priors or {}, share=share, start=start, threads=threads, progress=progress
+    )
+
+
+def refit_segments(
+    model: Model,
+    segments: Segments,
+    free: Sequence[str],
+    priors: Mapping[str, float],
+    *,
+    share: float = 1.0,
+    start: Refit | None = None,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Refit:
+    """Refit `free` parameters to the given segments; otherwise as `refit`."""
+    unknowns = unknowns_of(model, tuple(free), priors, start)
+    if not len(segments):
+        raise DataError("no segment without a gap in any of the recordings; give a shorter --segment")
+    count = max(round(share * len(segments)), 1)
+    chosen = np.unique(np.linspace(0, len(segments) - 1, count).round().astype(np.int64))
+    used = segments.pick(chosen)
+    tell = progress or (lambda share, text: None)
+    first = Shooting(model, unknowns, used, threads).begin_cost(used.seated(model))
+    near = approach(model, unknowns, used, chosen, start, threads, lambda part, text: tell(0.3 * part, text))
+    shooting = Shooting(model, near.unknowns, near.segments, threads)
+    solution = shooting.solve(near.states, lambda part, text: tell(0.3 + 0.7 * part, text), near.fresh)
+    found, correlation = estimates(unknowns, solution)
+    return Refit(
+        model.with_parameters(dict(zip(unknowns.names, solution.theta.tolist(), strict=True))),
+        found, correlation, (first, *solution.costs), len(used), int(np.sum(~solution.active)), solution.states, chosen,
+    )  # fmt: skip
+
+
+def default_prior(model: Model, name: str) -> float:
+    """Standard deviation that a parameter has before any data: 5 % of its value, in the parameter's unit.
+
+    Of its default where that is larger; where an effect is switched off, all that would bring it to its default.
+    """
+    specification, value = model.specification(name), model[name]
+    if value == specification.neutral and specification.default != value:
+        return abs(specification.default - value)
+    return PRIOR * max(abs(value), abs(specification.default))
+
+
+def unknowns_of(
+    model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None
+) -> Unknowns:
+    """What a refit of the named parameters fits; otherwise as `refit`. UsageError for none, or priors of zero."""
+    known = start.estimates if start else {}
+    prior = [priors.get(n, known[n].prior if n in known else default_prior(model, n)) for n in names]
+    if not names or not all(p > 0.0 for p in prior):
+        raise UsageError("a refit needs at least one free parameter, and priors above zero")
+    specs = [model.specification(name) for name in names]
+    return Unknowns(
+        names=names,
+        begin=np.array([known[n].before if n in known else model[n] for n in names]),
+        centre=np.array([known[n].before if n in known else model[n] for n in names]),
+        prior=np.array(prior),
+        low=np.array([s.low for s in specs]),
+        high=np.array([s.high for s in specs]),
+    )

@@ -1,0 +1,228 @@
+"""Many short simulations against measurements: segments of runs, whitened, as one batch of lanes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.equations.guess import guess_states, measured_columns
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.model import STEP
+from pneumo_ros.plant.sensing import sense
+from pneumo_ros.runs.run import PARTS, Run
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+PROBE = 1e-2  # scales: step of finite differences
+_COARSE = 2.0 * STEP  # s
+_WRONG = 1e9  # noise deviations: the most an error counts, so that its square stays a number
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Segments of equal length; arrays hold one row per segment.
+
+    first: index of each segment's first entry in `voltage`, the inputs during all segments; start [s]: when voltage[0]
+    would be by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
+    1 / noise, or 0 where nothing was measured; guess and scale (segments, states): initial states and their prior
+    deviations; shown (segments, signals): what sensors read at the guess, so as the model then was; columns: the states
+    that the signals show.
+    """
+
+    sample_time: float
+    samples: int
+    voltage: Array
+    first: Index
+    start: Array
+    measured: Array
+    weight: Array
+    guess: Array
+    scale: Array
+    shown: Array
+    columns: tuple[int, ...]
+    run: Index  # which run each segment is from
+    at: Index  # and the grid point there where it begins
+    runs: tuple[Run, ...]
+    parts: int = PARTS  # inputs held one after another in a sample
+    step: float = STEP  # s, longest of the integration
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def pick(self, chosen: Index) -> "Segments":
+        """Some of the segments, by index."""
+        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "run", "at")
+        return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
+
+    def guessed(self, model: Model) -> "Segments":
+        """The same with guesses as `model` makes them."""
+        guess, scale = self.guess.copy(), self.scale.copy()
+        for number in np.unique(self.run):
+            rows = self.run == number
+            found = guess_states(model, self.runs[number], self.at[rows])
+            guess[rows], scale[rows] = found.states, found.scale
+        return replace(self, guess=guess, scale=scale, shown=self.read(model, guess)[0])
+
+    def probes(self, states: Array) -> Array:
+        """States (states * segments, states), each entry in turn moved by `PROBE` of its scale: lanes of a Jacobian."""
+        moved = np.tile(states, (states.shape[1], 1, 1))
+        for j in range(states.shape[1]):
+            moved[j, :, j] += PROBE * self.scale[:, j]
+        return moved.reshape(-1, states.shape[1])
+
+    def coarser(self) -> "Segments":
+        """The same for integration in steps of 0.2 ms, with inputs held as long, where samples are that fine.
+
+        Half the work. Derivatives change by a hundredth, errors by a tenth of the noise and, at breakaways from a stiff
+        bristle, more: differences may be taken between results of either, never across.
+        """
+        if self.sample_time / self.parts > 0.5 * _COARSE * (1.0 + 1e-6) or self.parts % 2:
+            return replace(self, step=_COARSE)
+        pairs = self.voltage.reshape(-1, 2).mean(axis=1)
+        return replace(self, voltage=pairs, first=self.first // 2, parts=self.parts // 2, step=_COARSE)
+
+    def from_guess(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states).
+
+        For the measured ones it is the readings that are compared, which do not depend on what the sensors' effects
+        were taken to be when the guess was made.
+        """
+        apart = states.reshape(self._copies(states), *self.guess.shape) - self.guess
+        if not model.composition.true_sensors:
+            apart[..., self.columns] = self.read(model, states, parameters) - self.shown
+        return np.asarray(apart / self.scale)
+
+    def seated(self, model: Model, states: Array | None = None, shown: Array | None = None) -> Array:
+        """States (segments, states), measured ones moved to where sensors show `shown` (segments, signals).
+
+        Both are those of the guesses unless given.
+        """
+        moved: Array = (self.guess if states is None else states).copy()
+        for _ in range(0 if model.composition.true_sensors else 3):
+            moved[:, self.columns] += (self.shown if shown is None else shown) - self.read(model, moved)[0]
+        return moved
+
+    def read(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        """What sensors read at initial states (copies * segments, states): (copies, segments, signals)."""
+        copies = self._copies(states)
+        read = sense(
+            model, states[:, None], parameters, self.voltage, np.tile(self.first, copies),
+            sample_time=self.sample_time, start=np.tile(self.start - self.sample_time, copies), parts=self.parts,
+        )  # fmt: skip
+        return read.reshape(copies, *self.shown.shape)
+
+    def simulate(
+        self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1,
+        columns: Sequence[int] | None = None,
+    ) -> Array:  # fmt: skip
+        """(lanes, samples, states or columns) from initial states (lanes, states), lanes a multiple of the segments."""
+        copies = self._copies(states)
+        return model.simulate_lanes(
+            self.voltage, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
+            sample_time=self.sample_time, step=self.step, start=np.tile(self.start, copies), parts=self.parts,
+            threads=threads, columns=columns,
+        )  # fmt: skip
+
+    def residuals(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
+        """Whitened errors (copies, segments, samples * signals); predictions that left the finite count as very wrong.
+
+        states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
+        """
+        shape = self._copies(states), len(self), self.samples, len(self.columns)
+        error = self._predict(model, states, parameters, threads).reshape(shape)
+        with np.errstate(over="ignore", invalid="ignore"):
+            error -= self.measured
+            error *= self.weight
+        if not np.abs(error).max(initial=0.0) < _WRONG:
+            error = np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
+        return error.reshape(*shape[:2], shape[2] * shape[3])
+
+    def _predict(self, model: Model, states: Array, parameters: Array | None, threads: int) -> Array:
+        """What sensors read along all lanes (lanes, samples, signals)."""
+        if model.composition.true_sensors:
+            return self.simulate(model, states, parameters, threads, self.columns)
+        copies = self._copies(states)
+        return sense(
+            model, self.simulate(model, states, parameters, threads), parameters, self.voltage,
+            np.tile(self.first, copies), sample_time=self.sample_time, start=np.tile(self.start, copies),
+            parts=self.parts,
+        )  # fmt: skip
+
+    def _copies(self, states: Array) -> int:
+        return len(states) // len(self) if len(self) else 1
+
+
+def cut(model: Model, runs: Sequence[Run], duration: float, rows: Index | None = None) -> Segments:
+    """Cut runs into segments of `duration` [s], side by side and without gaps; UsageError when sample times differ.
+
+    `rows`, ascending: only those of the segments.
+    """
+    samples = max(round(duration / runs[0].sample_time), 2) if runs else 2
+    starts = [side_by_side(run, samples) for run in runs]
+    if rows is not None:
+        ends = np.cumsum([len(own) for own in starts])
+        chosen = np.split(rows, np.searchsorted(rows, ends[:-1]))
+        starts = [own[some - end] for own, some, end in zip(starts, chosen, ends, strict=True)]
+    return cut_at(model, runs, starts, samples)
+
+
+def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: int) -> Segments:
+    """Segments of `samples` that begin at the given grid points of each run."""
+    dt = runs[0].sample_time if runs else 1e-3
+    for run in runs:
+        if abs(run.sample_time / dt - 1.0) > 1e-3:
+            raise UsageError(
+                f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; "
+                "lay them on one grid"
+            )
+    names = measured_columns(model)
+    voltage, first = _inputs(runs, starts, samples)
+    measured, weight = [], []
+    for run, begin in zip(runs, starts, strict=True):
+        rows = begin[:, None] + np.arange(1, samples + 1)
+        noise = run.noise
+        measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
+        weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
+    counts = [len(begin) for begin in starts]
+    nothing = np.zeros((sum(counts), len(model.states)))
+    segments = Segments(
+        sample_time=dt,
+        samples=samples,
+        voltage=voltage,
+        first=first,
+        start=np.asarray(dt / PARTS * (np.concatenate(starts) * PARTS - first)),
+        measured=np.concatenate(measured),
+        weight=np.concatenate(weight),
+        guess=nothing,
+        scale=nothing,
+        shown=np.zeros((sum(counts), len(names))),
+        columns=tuple(names.values()),
+        run=np.repeat(np.arange(len(runs)), counts),
+        at=np.concatenate(starts),
+        runs=tuple(runs),
+    )
+    return segments.guessed(model)
+
+
+def _inputs(runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple[Array, Index]:
+    """What `cut_at` needs of the inputs, and where each segment's begin there: a few breakaways of minutes, often."""
+    inputs, first, count = [], [], 0
+    for run, begin in zip(runs, starts, strict=True):
+        edges = np.zeros(len(run) + 1, dtype=np.int64)
+        np.add.at(edges, begin, 1)
+        np.add.at(edges, begin + samples, -1)
+        needed = np.cumsum(edges)[: len(run) - 1] > 0  # between a grid point and the next
+        inputs.append(run.input.reshape(-1, PARTS)[needed].ravel())
+        first.append((count + np.concatenate([[0], np.cumsum(needed)])[begin]) * PARTS)
+        count += int(needed.sum())
+    return np.concatenate(inputs), np.concatenate(first)
+
+
+def side_by_side(run: Run, samples: int) -> Index:
+    """Grid points where segments of `samples` begin: side by side, without those that a gap cuts."""
+    starts = np.arange(0, len(run) - samples, samples, dtype=np.int64)
+    whole = np.array([bool(run.measured[s : s + samples + 1].all()) for s in starts], dtype=bool)
+    return starts[whole] if len(starts) else starts

@@ -1,0 +1,77 @@
+"""The state at given instants of a recording: estimated with the model from the measurements around them.
+
+A prediction started from smoothed signals alone is off by many times the noise even with the true parameters: what
+decides when a stuck piston breaks away is the bristle's deflection, which no sensor shows. Here a short simulation is
+fitted to the measurements before and after each instant, with its initial state free (Gauss-Newton with
+Levenberg-Marquardt damping); where the measurements say nothing, the balance of forces does.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.segments import PROBE, Segments, cut_at
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+BEFORE, AFTER = 0.3, 0.1  # s, fitted before and after each instant: most of what the state follows from is its past
+_ITERATIONS = 20  # at most; four on average, ten and more where a breakaway hides between guess and truth
+_ENOUGH, _STUCK = 1e-3, 1e5  # a start is found when a step gains less than this share, or when damping is beyond this
+
+
+def start_states(model: Model, run: Run, at: Index) -> Array:
+    """States (len(at), states) of `model` at the grid points `at` of a run, fitted to the measurements around them."""
+    before = round(BEFORE / run.sample_time)
+    samples = min(before + round(AFTER / run.sample_time), len(run) - 1)
+    begin = np.clip(at - before, 0, len(run) - 1 - samples)
+    segments = cut_at(model, [run], [begin], samples)
+    found = fit_starts(model, segments)
+    trajectory = segments.simulate(model, found)
+    ahead = at - begin
+    moved = ahead > 0
+    result: Array = found.copy()
+    result[moved] = trajectory[moved, ahead[moved] - 1]
+    return result
+
+
+def fit_starts(
+    model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS, threads: int = 1
+) -> Array:
+    """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself.
+
+    `begin` (segments, states) is where the search begins, by default the guesses.
+    """
+    x = segments.seated(model) if begin is None else begin.copy()
+    coarse, damping = segments.coarser(), np.full(len(x), 1e-3)
+    residual = _residuals(model, segments, x, threads)[0]
+    active = np.arange(len(x))
+    for _ in range(iterations):
+        candidate = x[active] + _move(model, coarse.pick(active), x[active], residual[active], damping[active], threads)
+        tried = _residuals(model, segments.pick(active), candidate, threads)[0]
+        cost, less = np.sum(residual[active] ** 2, axis=1), np.sum(tried**2, axis=1)
+        better = less < cost
+        x[active[better]], residual[active[better]] = candidate[better], tried[better]
+        damping[active] *= np.where(better, 0.2, 10.0)
+        active = active[np.where(better, cost - less > _ENOUGH * cost, damping[active] < _STUCK)]
+        if not len(active):
+            break
+    return x
+
+
+def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: Array, threads: int) -> Array:
+    """Levenberg-Marquardt step (segments, states) from states x with residuals (segments, residuals)."""
+    lanes = _residuals(model, segments, np.concatenate([x, segments.probes(x)]), threads)
+    jacobian = np.moveaxis((lanes[1:] - lanes[0]) / PROBE, 0, 2)
+    normal = np.swapaxes(jacobian, 1, 2) @ jacobian
+    gradient = np.einsum("wrs,wr->ws", jacobian, residual)
+    size = np.sqrt(np.einsum("wss->ws", normal))  # at least 1, by the prior
+    damped = normal / (size[:, :, None] * size[:, None, :]) + damping[:, None, None] * np.eye(x.shape[1])
+    return np.asarray(-np.linalg.solve(damped, (gradient / size)[:, :, None])[:, :, 0] / size * segments.scale)
+
+
+def _residuals(model: Model, segments: Segments, states: Array, threads: int) -> Array:
+    """(copies, windows, samples * signals + states): whitened errors and distances from the guess."""
+    errors = segments.residuals(model, states, threads=threads)
+    return np.concatenate([errors, segments.from_guess(model, states)], axis=2)

@@ -1,0 +1,71 @@
+"""Prediction windows: how far the model runs from the measurement within a given horizon."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.equations.guess import measured_columns
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.sensing import sense
+from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.shooting.segments import side_by_side
+from pneumo_ros.shooting.start import start_states
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Simulated against measured over windows: grid index of each window's start, and errors by signal name.
+
+    errors[name] has shape (windows, samples), what the model's sensor would read minus measurement in the signal's
+    unit, NaN where nothing was measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
+    """
+
+    start: NDArray[np.int64]
+    sample_time: float
+    errors: dict[str, Array]
+    states: Array  # (windows, samples, states)
+
+
+def predict(model: Model, run: Run, horizon: float) -> Prediction:
+    """Predict a run in windows of `horizon` [s], each from a start estimated around its first sample.
+
+    Raises UsageError when the run holds no such window.
+    """
+    samples = round(min(len(run), horizon / run.sample_time))
+    if samples < 2:
+        raise UsageError(
+            f"a horizon of {horizon:g} s holds no two samples of {run.name}, {run.sample_time:.3g} s apart; "
+            "give a longer --horizon"
+        )
+    starts = side_by_side(run, samples)
+    if not len(starts):
+        raise UsageError(
+            f"{run.name} has no window of {horizon:g} s without a gap in its {run.time[-1]:.3g} s; "
+            "give a shorter --horizon"
+        )
+    return _predict_from(model, run, starts, samples)
+
+
+def free_run(model: Model, run: Run) -> Prediction:
+    """Simulate the whole run from its first sample alone; where the state leaves the finite numbers, errors are too."""
+    return _predict_from(model, run, np.zeros(1, dtype=np.int64), len(run) - 1)
+
+
+def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
+    states = model.simulate_lanes(
+        run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
+        sample_time=run.sample_time, parts=PARTS,
+    )  # fmt: skip
+    read = sense(model, states, None, run.input, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
+    rows = starts[:, None] + np.arange(1, samples + 1)
+    hidden = np.where(run.measured[rows], 0.0, np.nan)
+    errors = {
+        name: read[:, :, i] - run.signals[name][rows] + hidden
+        for i, name in enumerate(measured_columns(model))
+        if name in run.signals
+    }
+    return Prediction(starts, run.sample_time, errors, states)

@@ -1,0 +1,74 @@
+"""Machines of the independent rig that hide something, short recordings of them; benchmarks/bench_blind.py has many."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rig import bags, case, effects
+
+from pneumo_ros.command.revealing import judge
+from pneumo_ros.diagnose.diagnosis import RULER, diagnose
+from pneumo_ros.diagnose.outcome import Outcome
+from pneumo_ros.plant import load_model
+from pneumo_ros.records import read_recording
+from pneumo_ros.runs.run import PARTS, Run, make_run
+
+STEP = 4e-5  # s, of the rig
+SAMPLES = 12_000  # of each run
+TRAIN, HELD = ("train_steps", "train_slow"), ("holdout_steps",)
+
+
+def shortened(run: Run) -> Run:
+    """The first seconds of a run."""
+    n = SAMPLES
+    assert run.pressure_a is not None
+    assert run.pressure_b is not None
+    return replace(
+        run, position=run.position[:n], pressure_a=run.pressure_a[:n], pressure_b=run.pressure_b[:n],
+        input=run.input[: (n - 1) * PARTS], measured=run.measured[:n],
+    )  # fmt: skip
+
+
+def outcome_of(folder: Path, seed: int, *hidden: str) -> Outcome:
+    """Record the worn machine of `seed` that hides these effects, and diagnose it from what was recorded."""
+    machine = effects.build(seed, [effects.parse(text) for text in hidden])
+    runs = {}
+    for run in case.make_runs(machine, (*TRAIN, *HELD), STEP):
+        bags.write(folder / run.name, run, case.epoch(seed))
+        runs[run.name] = shortened(make_run(read_recording(folder / run.name)))
+    return diagnose(load_model("axis"), [runs[name] for name in TRAIN], [runs[name] for name in HELD])
+
+
+@pytest.mark.parametrize(
+    ("seed", "hidden", "parameter", "equation"),
+    [
+        (21, "viscous_friction=150", ("coefficient", 150.0), "momentum"),
+        (22, "leakage_to_atmosphere=5e-10", ("conductance_b", 5e-10), "chamber_b"),
+    ],
+)
+def test_a_hidden_effect_is_found(
+    seed: int, hidden: str, parameter: tuple[str, float], equation: str, tmp_path: Path
+) -> None:
+    outcome = outcome_of(tmp_path, seed, hidden)
+    name, (key, size) = hidden.partition("=")[0], parameter
+    assert outcome.verdict == "effects_found"
+    assert equation in outcome.failing
+    assert judge([name], [(a.effect, a.indistinguishable_from) for a in outcome.added]).right
+    (found,) = [a for a in outcome.added if a.effect == name]
+    assert found.parameters[key].value == pytest.approx(size, rel=0.05)
+    assert abs(found.parameters[key].value - size) < 3.0 * found.parameters[key].std
+    assert all(one.std > 0.9 * RULER * size for one in found.parameters.values())  # also of the chamber that is tight
+    assert outcome.course[-1][1] < outcome.course[1][1]  # held-out error, in the end and of the refitted base
+
+
+def test_nothing_is_added_to_a_healthy_machine(tmp_path: Path) -> None:
+    outcome = outcome_of(tmp_path, 23)
+    assert outcome.added == ()
+    assert outcome.verdict == "adequate"
+
+
+def test_what_no_catalogue_has_is_not_called_adequate(tmp_path: Path) -> None:
+    outcome = outcome_of(tmp_path, 24, "detent_force=15")
+    assert outcome.verdict == "unknown_effect"
+    assert outcome.unexplained is not None
+    assert outcome.unexplained.equation == "momentum"

@@ -1,0 +1,39 @@
+"""Variants driven along a recording whose sensors do something: many at once give what each gives alone."""
+
+import numpy as np
+from identify.making import own
+
+from pneumo_ros.diagnose.course import alike_sensors, follow_each, frame_of
+from pneumo_ros.plant import Model
+
+SENSORS = ("position_sensor_delay", "pressure_sensor_offset")
+MODEL, _, RUN = own("steps", seconds=3.0)
+LATE = MODEL.with_effects([*MODEL.effects, *SENSORS])
+
+
+def variants(model: Model) -> np.ndarray:
+    """Parameter vectors: three other frictions, two of them with another delay, one with another offset."""
+    names, rows = list(model.parameters), np.tile(model.values, (6, 1))
+    rows[:3, names.index("lugre_friction.coulomb_friction")] *= [1.0, 1.01, 0.99]
+    rows[3:5, names.index("position_sensor_delay.delay")] *= 1.2
+    rows[5, names.index("pressure_sensor_offset.offset_a")] *= -1.0
+    return rows
+
+
+def driven(rows: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    return {v.index: (v.states, v.claimed) for v in follow_each(LATE, frame_of(RUN, False), rows)}
+
+
+def test_variants_with_the_same_sensors_are_one_group() -> None:
+    _, group = alike_sensors(LATE, variants(LATE))
+    assert group[0] == group[1] == group[2]
+    assert group[3] == group[4]
+    assert len(set(group)) == 3
+
+
+def test_a_variant_gives_the_same_alone_and_beside_others() -> None:
+    rows = variants(LATE)
+    for k, (states, mean) in driven(rows).items():
+        [(alone, alone_mean)] = driven(rows[k : k + 1]).values()
+        assert np.array_equal(states, alone)
+        assert np.array_equal(mean, alone_mean)

@@ -1,0 +1,70 @@
+"""The evidence: noise where nothing is missing, the residuals of the equations, the same for one variant or many."""
+
+import numpy as np
+import pytest
+from identify.making import own, rig
+
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.hypothesis import everything, family_scales, missing, vectors
+from pneumo_ros.equations.weak import equation_residuals
+
+
+def test_the_true_machine_leaves_noise_in_every_family() -> None:
+    model, _, run = rig("train_steps", 1)
+    evidence = Evidence(model, [run])
+    scale = dict(zip(evidence.names, family_scales(evidence, evidence.residual(model)), strict=True))
+    breakaways = scale.pop("breakaway")
+    assert all(value == pytest.approx(1.0, abs=0.15) for value in scale.values()), scale
+    assert breakaways < 1.0
+
+
+@pytest.mark.parametrize(("equation", "width"), [("momentum", 100), ("chamber_a", 200), ("chamber_b", 200)])
+def test_they_are_the_residuals_of_the_equations(equation: str, width: int) -> None:
+    model, _, run = own("steps")
+    wrong = model.with_parameters({"quadratic_drag.coefficient": 6000.0, "arctan_flow.filling_coefficient": 6e-9})
+    evidence = Evidence(wrong, [run])
+    ours = evidence.residual(wrong)[evidence.family == evidence.names.index(f"{equation} {width} ms")]
+    known = equation_residuals(wrong, run)[equation]
+    assert len(ours) == pytest.approx(len(known.value), rel=0.02)
+    theirs = known.value / known.noise
+    assert np.sqrt(np.mean(ours**2)) == pytest.approx(np.sqrt(np.mean(theirs**2)), rel=0.02)
+
+
+def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
+    model, _, run = own("sweep")
+    found = missing(model)
+    whole = everything(model, found)
+    variants = [
+        {}, {"pressure_sensor_offset.offset_a": 4e3}, {"viscous_friction.coefficient": 50.0},
+        {"position_sensor_delay.delay": 4e-3}, {"dead_volume.volume_added_b": 1e-5},
+    ]  # fmt: skip
+    evidence = Evidence(model, [run])
+    together = evidence.residuals(whole, vectors(whole, variants))
+    for values, residual in zip(variants, together, strict=True):
+        alone = evidence.residual(whole.with_parameters(values))
+        assert np.array_equal(alone, residual)
+    assert together[0] == pytest.approx(evidence.residual(model), abs=1e-6)
+    moved = [float(np.abs(r - together[0]).max()) for r in together[1:]]
+    assert min(moved) > 1.0, "every variant shows"
+
+
+FAST = {"valve_spool_dynamics.angular_frequency": 60.0, "position_sensor_delay.delay": 0.01, "line_delay.delay": 0.006}
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_ranking_errs_by_hundredths_of_an_effect(name: str) -> None:
+    model, _, run = own("sweep")
+    whole = everything(model, missing(model))
+    evidence, variants = Evidence(model, [run]), vectors(whole, [{}, {name: FAST[name]}])
+    exact, ranked = (np.diff(evidence.residuals(whole, variants, ranking=r), axis=0) for r in (False, True))
+    error = np.sqrt(np.mean((ranked - exact) ** 2) / np.mean(exact**2))
+    assert 0.0 < error < 0.03, "and is not the same evaluation"
+
+
+def test_part_of_the_evidence_is_that_of_its_runs() -> None:
+    model, _, first = own("steps")
+    _, _, second = own("sweep")
+    evidence = Evidence(model, [first, second])
+    part, rows = evidence.only([1])
+    assert [run.name for run in part.runs] == [second.name]
+    assert np.array_equal(part.residual(model), evidence.residual(model)[rows])

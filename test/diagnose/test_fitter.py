@@ -1,0 +1,54 @@
+"""A model and what it may gain, fitted: sizes that stand in for each other, and what is known from elsewhere."""
+
+from functools import lru_cache
+
+import pytest
+from identify.making import own
+
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.polishing import polish
+from pneumo_ros.plant import Model
+
+STRIBECK, LEAKS = "stribeck_shape", "leakage_to_atmosphere"
+STATIC = "lugre_friction.static_friction"
+
+
+@lru_cache(maxsize=2)
+def fitter(candidate: str) -> Fitter:
+    """Of a machine that hides nothing."""
+    model, _, run = own("steps")
+    return Fitter(model, [run], [run], [candidate])
+
+
+def with_effect(name: str, **values: float) -> Model:
+    start = fitter(name).start
+    return start.with_effects([*start.effects, name], {f"{name}.{key}": value for key, value in values.items()})
+
+
+def test_a_size_that_another_stands_in_for_is_left_neutral() -> None:
+    """Of a Gaussian Stribeck curve, exponent 2 and no rational tail, which a tail and another exponent come near."""
+    found = fitter(STRIBECK).simplest(with_effect(STRIBECK, exponent=1.6, rational=0.5), STRIBECK)
+    assert 0.0 in (found[f"{STRIBECK}.rational"], found[f"{STRIBECK}.exponent"] - 2.0)
+
+
+def test_sizes_of_one_kind_are_all_kept() -> None:
+    model = with_effect(LEAKS, conductance_a=1e-11, conductance_b=2e-11)
+    assert fitter(LEAKS).simplest(model, LEAKS) is model
+
+
+def test_the_equations_speak_against_an_effect_that_is_not_there() -> None:
+    start = fitter(LEAKS).start
+    values = {f"{LEAKS}.conductance_{side}": 0.0 for side in "ab"}
+    assert abs(fitter(LEAKS).against(start, LEAKS, values)) < 0.5
+    assert fitter(LEAKS).against(start, LEAKS, values | {f"{LEAKS}.conductance_a": 2e-10}) > 100.0
+
+
+@pytest.mark.parametrize("std", [1e-4, None])
+def test_what_is_known_from_elsewhere_holds_a_refit_by_prediction(std: float | None) -> None:
+    """Static friction 2 % off: segments mend it, unless it is said to be known."""
+    start = fitter(LEAKS).start
+    off = start.with_parameters({STATIC: 1.02 * start[STATIC]})
+    sure = None if std is None else {STATIC: std}
+    found = polish(fitter(LEAKS), off, fitter(LEAKS).train.runs, 12, sure=sure).model
+    moved = abs(found[STATIC] - off[STATIC])
+    assert moved < 0.02 if std else moved > 0.5

@@ -1,0 +1,66 @@
+"""What an effect removes, measured where it acts."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.measures import FEWEST, acting, explained, gains, usual_gains
+
+N, HERE = 4000, 200  # windows, and those in which the effect acts
+NOISE = np.random.default_rng(0).normal(size=N)
+EVIDENCE = cast(Evidence, SimpleNamespace(names=("chamber_a 200 ms",), family=np.zeros(N, dtype=np.int64)))
+
+
+def effect(windows: int = HERE, size: float = 1.5) -> np.ndarray:
+    """What the effect adds to the residual: hundreds of windows in a row, and hardly anything elsewhere."""
+    added = np.full(N, 0.01)
+    added[1000 : 1000 + windows] = size
+    return added
+
+
+def test_a_rare_effect_counts_where_it_acts() -> None:
+    before = NOISE + effect()
+    there = acting(before, NOISE)
+    assert there.sum() == HERE
+    assert gains(EVIDENCE, before, NOISE)["chamber_a"] < 0.12
+    assert gains(EVIDENCE, before, NOISE, there)["chamber_a"] == pytest.approx(1.5**2 / (1.0 + 1.5**2), abs=0.1)
+    assert explained(EVIDENCE, before, NOISE, there) > 0.8
+
+
+def test_what_acts_but_explains_nothing_gains_nothing() -> None:
+    wrong = NOISE - effect()  # the machine has no such effect
+    assert gains(EVIDENCE, NOISE, wrong, acting(NOISE, wrong))["chamber_a"] < 0.0
+
+
+def test_a_few_windows_say_nothing() -> None:
+    before = NOISE + effect(FEWEST - 1)
+    assert gains(EVIDENCE, before, NOISE, acting(before, NOISE)) == {}
+    assert explained(EVIDENCE, before, NOISE, acting(before, NOISE)) == 0.0
+
+
+def test_a_dozen_breakaways_do() -> None:
+    """They do not overlap as windows do."""
+    slips = cast(Evidence, SimpleNamespace(names=("breakaway",), family=np.zeros(12, dtype=np.int64)))
+    after = np.random.default_rng(1).normal(0.0, 0.7, 12)
+    assert explained(slips, after + 3.0, after, np.ones(12, dtype=bool)) > 0.8
+
+
+def test_one_wild_breakaway_says_nothing_against_the_others() -> None:
+    slips = cast(Evidence, SimpleNamespace(names=("breakaway",), family=np.zeros(20, dtype=np.int64)))
+    before = np.append(np.linspace(-0.9, 0.9, 19), -4.0)
+    after = np.append(before[:-1], -7.0)
+    assert gains(slips, before, after)["breakaway"] < -1.0
+    assert usual_gains(slips, before, after)["breakaway"] > -0.1
+    assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them do
+
+
+@pytest.mark.parametrize(("name", "least"), [("breakaway", 0.9), ("chamber_a 200 ms", 0.0)])
+def test_breakaways_that_all_change_a_little_are_judged_together(name: str, least: float) -> None:
+    """There are twenty of them at most, and their noise is generous: none changes by a quarter of it."""
+    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=np.zeros(20, dtype=np.int64)))
+    before, after = np.full(20, 0.95), np.full(20, 0.75)
+    assert not acting(before, after).any()
+    assert explained(evidence, before, after, acting(before, after)) == pytest.approx(least, abs=0.1)

@@ -1,0 +1,105 @@
+"""In which order effects are added, with the fitting and the predicting played by a table."""
+
+from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.search import UNHELPFUL, VANISHED, Search
+from pneumo_ros.diagnose.steps import Step
+from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.plant import Model, load_model
+
+BASE = load_model("axis")
+LOAD, DROOP, OFFSET, STRIBECK = "constant_load", "supply_pressure_droop", "pressure_sensor_offset", "stribeck_shape"
+CLEAR = {STRIBECK}  # its equation is explained: predictions need not bear it out
+
+
+def trial(name: str) -> Trial:
+    """A candidate that passes every test but is not clear: predictions have to bear it out."""
+    h = Hypothesis(name, (), np.empty(0), np.empty(0), np.empty(0), t=50.0)
+    share = 0.9 if name in CLEAR else 0.6
+    given: dict[str, Any] = {"gain": {"momentum": 0.5}, "z": 9.0, "size": 1.0, "stable": True, "share": share}
+    return Trial(hypothesis=h, held=np.empty(0), first=False, decoy=0.0, score=100.0, **given)
+
+
+class Played(Search):
+    """Candidates are tried in the order given; what is left of them, and how models predict, stands in tables."""
+
+    def __init__(
+        self,
+        order: Sequence[str],
+        errors: Mapping[frozenset[str], float],
+        vanish: Mapping[str, str] | None = None,
+        slipping: str = "",
+    ) -> None:
+        self.progress = lambda share, text: None
+        self.slipping = slipping
+        self.order, self.vanish, self.asked = order, vanish or {}, list[tuple[frozenset[str], str]]()
+        self.start = BASE
+        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model))
+        self.predicted = cast(Any, lambda model: {"position": errors[self.added(model)]})
+        self.slips = cast(Any, lambda model: None)
+
+    @staticmethod
+    def added(model: Model) -> frozenset[str]:
+        return frozenset(model.effects) - frozenset(BASE.effects)
+
+    def round(self, model: Model, refused: Mapping[str, str]) -> Step:
+        found = [trial(n) for n in self.order if n not in refused and n not in model.effects]
+        return Step(model, tuple(found), found[0] if found else None, (), {}, {})
+
+    def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
+        self.asked.append((self.added(model), trial.name))
+        gone = [old for old, new in self.vanish.items() if new == trial.name and old in model.effects]
+        return model.with_effects([*(n for n in model.effects if n not in gone), trial.name]), gone
+
+    def slip_round(self, model: Model) -> tuple[Model, Step | None]:
+        if not self.slipping:
+            return model, None
+        step = Step(model, (), trial(self.slipping), (), {}, {})
+        return model.with_effects([*model.effects, self.slipping]), step
+
+    def settled(self, model: Model) -> Model:
+        return model
+
+
+def errors(**each: float) -> dict[frozenset[str], float]:
+    short = {"load": LOAD, "droop": DROOP, "offset": OFFSET, "stribeck": STRIBECK}
+    return {frozenset(short[part] for part in key.split("_") if part != "base"): value for key, value in each.items()}
+
+
+def names(search: Search) -> list[str]:
+    return [step.added.name for step in search.run().steps if step.added]
+
+
+def test_an_effect_that_predictions_do_not_bear_out_is_tried_again_once_another_is_in() -> None:
+    search = Played([LOAD, DROOP], errors(base=10.0, load=10.0, droop=5.0, load_droop=1.0))
+    assert names(search) == [DROOP, LOAD]
+
+
+def test_it_is_tried_once_beside_each_model() -> None:
+    search = Played([LOAD, DROOP], errors(base=10.0, load=10.0, droop=5.0, load_droop=5.0))
+    assert names(search) == [DROOP]
+    assert search.asked == [(frozenset(), LOAD), (frozenset(), DROOP), (frozenset([DROOP]), LOAD)]
+
+
+def test_what_vanished_beside_another_does_not_come_back() -> None:
+    search = Played(
+        [OFFSET, LOAD], errors(base=10.0, offset=6.0, load=1.0, load_offset=0.5), vanish={OFFSET: LOAD}
+    )  # fmt: skip
+    found = search.run()
+    assert [step.added.name for step in found.steps if step.added] == [LOAD]
+    assert [t.refused for t in found.steps[0].trials if t.name == OFFSET] == [VANISHED]
+    assert UNHELPFUL not in {t.refused for step in found.steps for t in step.trials}
+
+
+@pytest.mark.parametrize(("left", "added"), [(9.0, [STRIBECK]), (1.0, [STRIBECK, LOAD])])
+def test_what_only_mends_the_law_of_another_shape_that_was_added_is_no_effect(left: float, added: list[str]) -> None:
+    """A law that explains its equation but spoils predictions: who mends them has to leave less than without both."""
+    search = Played([STRIBECK], errors(base=6.0, stribeck=13.0, stribeck_load=left), slipping=LOAD)
+    assert names(search) == added

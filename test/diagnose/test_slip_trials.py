@@ -1,0 +1,102 @@
+"""What breakaways and reversals alone speak for: a size that they determine, and only of what enough of them show."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose import slip_trials
+from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.slip_trials import Candidates, Slipping, as_trial, deviations_better, resized
+from pneumo_ros.diagnose.slips import Slips
+from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.plant import Model, load_model
+
+Array = NDArray[np.float64]
+
+MODEL = load_model("axis")
+EFFECT = "dwell_time_breakaway"
+RISE = 12.0  # N
+SAMPLES = 300
+
+
+def tried(model: Model, before: Array, after: Array, std: dict[str, float], q: float = 0.5) -> Trial:
+    effect = coordinates(MODEL.library.find(EFFECT))
+    return as_trial(Slipping(EFFECT, model, after, after, std), effect, before, before, q, SAMPLES, True)
+
+
+@pytest.mark.parametrize(("std", "objects"), [(1.5, False), (13.8, True), (None, True)])
+def test_a_size_that_nothing_determines_is_refused(std: float | None, objects: bool) -> None:
+    """Everything else speaks for it: each event fits ten times better."""
+    model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
+    before, after = np.full(40, 10.0), np.full(40, 1.0)
+    known = {} if std is None else {f"{EFFECT}.rise": std}
+    trial = tried(model, before, after, known)
+    assert any("uncertainty" in words for words in trial.objections) is objects
+    assert bool(trial.objections) is objects
+
+
+@pytest.mark.parametrize(("changed", "objects"), [(16, False), (3, True)])
+def test_an_effect_that_touches_two_events_in_five_is_told_by_their_upper_quartile(changed: int, objects: bool) -> None:
+    """The others scatter about the noise with it as without it."""
+    model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
+    rng = np.random.default_rng(1)
+    before, after = (1.05 + 0.003 * rng.standard_normal(40) for _ in range(2))
+    before[:changed] = 30.0
+    assert bool(tried(model, before, after, {f"{EFFECT}.rise": 1.5}, 0.75).objections) is objects
+
+
+def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
+    model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
+    before, after = np.full(40, 10.0), np.full(40, 1.0)
+    for against, objects in ((-3.0, False), (60.0, False), (130.0, True)):  # forty events speak for it by 3 each
+        candidate = Slipping(EFFECT, model, after, after, {f"{EFFECT}.rise": 1.5}, against)
+        trial = as_trial(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
+        assert any("speak against it" in words for words in trial.objections) is objects
+        assert bool(trial.objections) is objects
+
+
+def test_sizes_grow_and_shapes_stay() -> None:
+    """Of what fades in with a size that falls, as a bandwidth, the inverse grows."""
+    model = MODEL.with_effects([*MODEL.effects, EFFECT, "valve_spool_dynamics"], {f"{EFFECT}.rise": RISE})
+    assert resized(coordinates(MODEL.library.find(EFFECT)), model, 2.0) == {f"{EFFECT}.rise": 2.0 * RISE}
+    spool = resized(coordinates(MODEL.library.find("valve_spool_dynamics")), model, 2.0)
+    (name,) = [name for name, value in spool.items() if value != model[name]]
+    assert spool[name] == pytest.approx(0.5 * model[name])
+
+
+LAG, TRUE = "friction_lag", 8e-3
+BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # sizes that the candidates begin with
+
+
+class Stuck(Candidates):
+    """Fits that stay where they begin: so far from the true lag, so bad; the other candidate is refused, not bad."""
+
+    def _fitted(self, name: str, begin: Model) -> Slipping:
+        size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
+        error = np.full(40, 1.2 if name != LAG else 1.0 + 1.5 * abs(np.log2(size / TRUE)))
+        return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0)
+
+
+@pytest.mark.parametrize("begun", [2e-3, 32e-3, 8e-3])
+def test_a_fit_that_explains_part_is_begun_anew_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where another explains more that the equations along the motion speak against."""
+
+    def begins(alone: Model, _found: Slips, name: str) -> tuple[float, Model]:
+        key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)
+        return 1.0, alone.with_effects([*alone.effects, name], {key: BEGUN[name]})
+
+    monkeypatch.setattr(slip_trials, "by_sizes", begins)
+    monkeypatch.setitem(BEGUN, LAG, begun)
+    nothing = np.empty(0, dtype=np.int64)
+    tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([*BEGUN])
+    assert {c.name: c.model[f"{LAG}.time_constant"] for c in tried if c.name == LAG} == {LAG: pytest.approx(TRUE)}
+
+
+def test_events_that_nothing_changes_and_single_wild_ones_decide_nothing() -> None:
+    before = np.ones(40)
+    assert deviations_better(before, before, SAMPLES) == 0.0
+    wild = before.copy()
+    wild[0] = 1e6
+    assert deviations_better(wild, before, SAMPLES) == pytest.approx(1.0)
+    assert deviations_better(before, wild, SAMPLES) == pytest.approx(-1.0)
+    assert deviations_better(np.full(40, 2.0), before, SAMPLES) == pytest.approx(np.sqrt(40.0))

@@ -1,0 +1,39 @@
+"""Friction refitted to breakaways and reversals, with the simulations played by a table."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from pneumo_ros.diagnose import slips
+from pneumo_ros.plant import Model, load_model
+
+STATIC = "lugre_friction.static_friction"
+AXIS = load_model("axis")
+
+
+@pytest.mark.parametrize(
+    ("errors", "rounds"),
+    [
+        ((88.0, 7.8, 1.02, 1.0), 2),  # a valley on the way
+        ((88.0, 1.2, 1.0), 1),  # arrived
+        ((88.0, 60.0, 20.0), 1),  # something else is missing
+        ((88.0, 30.0, 90.0, 1.0), 1),  # begun anew, and worse
+        ((88.0, 90.0, 1.0), 0),
+    ],
+)
+def test_a_refit_that_came_far_is_begun_anew_where_it_ended(
+    errors: tuple[float, ...], rounds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refitted(model: Model, *_others: Any) -> Any:
+        return SimpleNamespace(model=model.with_parameters({STATIC: model[STATIC] + 1.0}))
+
+    def played(model: Model, segments: Any) -> np.ndarray:
+        return np.full(3, errors[round(model[STATIC] - AXIS[STATIC])])
+
+    monkeypatch.setattr(slips, "refit_segments", refitted)
+    monkeypatch.setattr(slips, "errors", played)
+    events = cast(slips.Slips, SimpleNamespace(train=lambda model: None))
+    found = slips.polished(AXIS, events, {})
+    assert found[STATIC] == pytest.approx(AXIS[STATIC] + rounds)

@@ -1,0 +1,76 @@
+"""Breakaways: found where a piston moves off from rest, with the force that friction held."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from identify.constant import constant_run, truth
+
+from pneumo_ros.equations.breakaway import find_breakaways, holding_force
+
+STATIC = 100.0  # N, of the paper's machine
+
+
+@pytest.mark.parametrize("volts", [0.80, -0.80, 0.83, -1.0])
+def test_the_force_is_the_static_friction(volts: float) -> None:
+    (found,) = find_breakaways(truth(), constant_run(volts))
+    assert found.direction == np.sign(volts)
+    assert abs(found.force - STATIC) < 2.0 * found.spread
+    assert found.spread < 5.0
+    assert found.ramp > 0.0
+
+
+def test_slow_rises_tell_the_force_best() -> None:
+    slow, fast = (find_breakaways(truth(), constant_run(volts))[0] for volts in (0.80, 7.0))
+    assert slow.spread < 1.0 < 5.0 < fast.spread
+    assert abs(slow.force - STATIC) < 1.0 < abs(fast.force - STATIC)
+
+
+def test_time_is_where_sliding_is_certain() -> None:
+    run = constant_run(0.83)
+    (found,) = find_breakaways(truth(), run)
+    before, after = run.position[: found.index - 100], run.position[found.index :]
+    assert np.ptp(before) < 3e-4
+    assert np.all(np.abs(after - run.position[0]) > 3e-4)
+    assert found.time == pytest.approx(found.index * 1e-3)
+    assert 0.1 < found.rest < found.time + 1e-9
+
+
+def test_a_piston_that_never_moves_does_not_break_away() -> None:
+    assert find_breakaways(truth(), constant_run(0.5)) == []
+
+
+def test_a_piston_that_never_rests_does_not_break_away() -> None:
+    run = constant_run(1.0)
+    moving = 1e-2 * run.time - 0.5
+    assert find_breakaways(truth(), replace(run, position=moving)) == []
+
+
+def test_leaving_an_end_is_no_breakaway() -> None:
+    run = constant_run(0.83)
+    assert find_breakaways(truth(), replace(run, position=run.position - 0.0995)) == []
+
+
+def test_a_gap_before_it_hides_a_breakaway() -> None:
+    run = constant_run(0.83)
+    (found,) = find_breakaways(truth(), run)
+    measured = run.measured.copy()
+    measured[found.index - 5 : found.index - 2] = False
+    assert find_breakaways(truth(), replace(run, measured=measured)) == []
+
+
+def test_stops_on_the_way_are_found() -> None:
+    """Rest, slide, rest, slide back."""
+    run = constant_run(1.0)
+    path = np.interp(run.time, [0.0, 1.0, 2.0, 3.0, 4.0, 8.0], [0.0, 0.0, 0.05, 0.05, 0.0, 0.0])
+    found = find_breakaways(truth(), replace(run, position=path))
+    assert [b.direction for b in found] == [1, -1]
+    assert [b.time for b in found] == pytest.approx([1.0, 3.0], abs=0.05)
+
+
+def test_holding_force_is_that_of_the_pressures() -> None:
+    run = constant_run(0.5, noisy=False)
+    assert run.pressure_a is not None
+    assert run.pressure_b is not None
+    expected = truth()["piston.area_a"] * run.pressure_a - truth()["piston.area_b"] * run.pressure_b
+    np.testing.assert_allclose(holding_force(truth(), run)[50:], expected[50:], atol=0.5)

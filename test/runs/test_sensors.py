@@ -1,0 +1,150 @@
+"""Sensor effects: taken back before states are guessed, predicted and refitted as any other."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from identify.making import own, ratio, rig
+from rig.effects import Wish, build
+
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.runs.sensors import corrected, driven
+from pneumo_ros.shooting.refit import Refit, refit
+from pneumo_ros.shooting.segments import cut
+from pneumo_ros.shooting.windows import predict
+
+OFFSET, GAIN, DELAY = "pressure_sensor_offset", "pressure_sensor_gain", "position_sensor_delay"
+SIZES = {
+    OFFSET: {"offset_a": 0.0, "offset_b": 12e3},
+    GAIN: {"error_a": 0.0, "error_b": 0.015},
+    DELAY: {"delay": 8e-3},
+    "backlash": {"gap": 5e-4},
+}
+ON_RIG = {OFFSET: 12e3, GAIN: 0.015, DELAY: 8e-3, "backlash": 2.5e-4}  # the rig's play is a half width
+
+
+def with_effect(model: Model, effect: str, **values: float) -> Model:
+    """The model with a sensor effect of the given values, else of none."""
+    given = {f"{effect}.{key}": value for key, value in values.items()}
+    return model.with_effects([*model.effects, effect], given)
+
+
+@lru_cache(maxsize=8)
+def on_rig(effect: str) -> tuple[Model, Model, Run]:
+    """Model of the rig without and with the effect that it hides, and one of its runs."""
+    base, _, run = rig("train_sweep", 3, effect, ON_RIG[effect])
+    hidden = build(3, [Wish(effect, ON_RIG[effect])]).machine
+    truth = {
+        OFFSET: {"offset_a": hidden.offset_a, "offset_b": hidden.offset_b},
+        GAIN: {"error_a": hidden.gain_a, "error_b": hidden.gain_b},
+        DELAY: {"delay": hidden.position_delay},
+        "backlash": {"gap": 2.0 * hidden.encoder_play},
+    }
+    return base, with_effect(base, effect, **truth[effect]), run
+
+
+def seen(effect: str) -> tuple[Model, np.ndarray, Run]:
+    """A model with a sensor effect, its true states and what its sensors read, without noise."""
+    base, _, run = own("sweep", noisy=False, seconds=10.0)
+    model = with_effect(base, effect, **SIZES[effect])
+    start = model.state(p_a=3e5, p_b=3.9e5)
+    states = np.vstack([start, model.simulate(run.input, start, parts=PARTS)])
+    read = model.outputs(states)
+    return (
+        model,
+        states,
+        replace(run, position=read["y_measured"], pressure_a=read["p_a_measured"], pressure_b=read["p_b_measured"]),
+    )
+
+
+# what may be left, as a share of what the effect did, rms
+@pytest.mark.parametrize(("effect", "share"), [(OFFSET, 0.01), (GAIN, 0.01), (DELAY, 0.05), ("backlash", 0.5)])
+def test_what_the_sensors_did_is_taken_back(effect: str, share: float) -> None:
+    model, states, run = seen(effect)
+    frame = run.smoothed.frame
+    column = 0 if effect in (DELAY, "backlash") else 3
+    before, after = (one[:, column] - states[:, column] for one in (frame, corrected(model, frame, run)))
+    assert ratio(after, 1.0) < share * ratio(before, 1.0)
+
+
+def test_the_velocity_behind_a_delay_is_that_of_later() -> None:
+    model, states, run = seen(DELAY)
+    frame = run.smoothed.frame
+    before, after = (np.abs(one[:, 1] - states[:, 1]) for one in (frame, corrected(model, frame, run)))
+    assert np.median(after) < 0.3 * np.median(before)
+
+
+def test_true_sensors_give_the_frame_back_and_drive_as_follow_does() -> None:
+    model, _, run = own("steps", seconds=3.0)
+    frame = run.smoothed.frame
+    assert corrected(model, frame, run) is frame
+    expected = model.follow(frame, run.input, model.state()[4:], parts=PARTS)
+    np.testing.assert_array_equal(driven(model, frame, run), expected)
+
+
+def test_neutral_sensors_correct_nothing() -> None:
+    base, _, run = own("steps", seconds=3.0)
+    model = base
+    for effect, values in SIZES.items():
+        model = with_effect(model, effect, **dict.fromkeys(values, 0.0))
+    frame = run.smoothed.frame
+    np.testing.assert_array_equal(corrected(model, frame, run), frame)
+
+
+def position_and_pressures(model: Model, run: Run) -> tuple[float, float]:
+    """Window errors in noise floors: of position, and the larger one of the pressures."""
+    noise = run.noise
+    found = {name: ratio(errors, noise[name]) for name, errors in predict(model, run, 1.0).errors.items()}
+    return found["position_m"], max(found["pressure_a_pa"], found["pressure_b_pa"])
+
+
+@pytest.mark.parametrize("effect", SIZES)
+def test_the_true_sensors_predict_the_independent_rig(effect: str) -> None:
+    base, true, run = on_rig(effect)
+    position, pressure = position_and_pressures(true, run)
+    assert position < 1.3
+    assert pressure < 1.05
+    assert position_and_pressures(base, run)[0] > 10.0
+
+
+def found_on_rig(effect: str) -> tuple[Model, Refit]:
+    """True model, and the refit of the sensor effect from nothing."""
+    base, true, run = on_rig(effect)
+    free = [name for name in true.parameters if name.startswith(effect)]
+    start = with_effect(base, effect, **dict.fromkeys(SIZES[effect], 0.0))
+    priors = {OFFSET: 2e4, GAIN: 0.03, DELAY: 0.02, "backlash": 1e-3}
+    return true, refit(start, [run], free=free, priors=dict.fromkeys(free, priors[effect]))
+
+
+@pytest.mark.parametrize("effect", SIZES)
+def test_sensor_effects_are_refitted_from_nothing(effect: str) -> None:
+    true, found = found_on_rig(effect)
+    for name, estimate in found.estimates.items():
+        size = max(true[other] for other in found.estimates)
+        assert estimate.determined
+        assert estimate.value == pytest.approx(true[name], abs=0.05 * abs(size)), name
+
+
+def test_the_prior_on_starts_is_on_what_sensors_read() -> None:
+    """A guess made with sensors taken for true does not pull an offset, refitted later, towards nothing."""
+    base, _, run = own("steps", seconds=3.0)
+    neutral = with_effect(base, OFFSET, offset_a=0.0, offset_b=0.0)
+    segments = cut(neutral, [run], 0.5)
+    shifted = with_effect(base, OFFSET, offset_a=5e3, offset_b=-2e3)
+    np.testing.assert_allclose(segments.seated(shifted) - segments.guess, [[0.0, 0.0, -5e3, 2e3, 0.0]] * 5, atol=1e-6)
+    np.testing.assert_allclose(segments.from_guess(shifted, segments.seated(shifted)), 0.0, atol=1e-9)
+    away = segments.from_guess(shifted, segments.guess)[0]
+    np.testing.assert_allclose(away[:, 2], 5e3 / segments.scale[:, 2])
+
+
+def test_time_runs_anew_in_every_recording() -> None:
+    """Friction that warms up does so in the second recording as it did in the first."""
+    base, _, run = own("steps", seconds=3.0)
+    model = base.with_effects(
+        [*base.effects, "friction_warmup"], {"friction_warmup.share": 0.5, "friction_warmup.time_constant": 2.0}
+    )
+    segments = cut(model, [run, run], 0.5)
+    first, second = segments.simulate(model, segments.guess).reshape(2, 5, *segments.measured.shape[1:2], 5)
+    np.testing.assert_allclose(first, second, rtol=1e-9, atol=1e-12)
