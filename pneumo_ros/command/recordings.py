@@ -1,26 +1,23 @@
-"""Recordings named on the command line: folders of them expanded, what cannot be read said, names kept apart."""
+"""Recordings named on the command line: folders of them expanded, read as the options say, problems reported."""
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pneumo_ros.command.console import Console
-from pneumo_ros.errors import DataError
 
 if TYPE_CHECKING:
     from pneumo_ros.plant import Model
-    from pneumo_ros.records import Recording
+    from pneumo_ros.reading.read import Reading, ReadOptions
+    from pneumo_ros.runs.cuts import Cut
     from pneumo_ros.runs.run import Run
-
-ATMOSPHERE = 101325.0  # Pa, for machines that do not say
 
 
 def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
     """The recordings named, in order, and whether each came out of a folder of recordings.
 
-    What is named twice is taken once. Raises DataError for a folder that holds none.
+    What is named twice is taken once.
     """
     from pneumo_ros.records.folders import recordings_in
 
@@ -37,32 +34,36 @@ def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
     return found
 
 
-def read_run(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "tuple[Recording, Run]":
-    """One recording as `options` say, and on a uniform grid; notes and errors as `read_runs`."""
-    from pneumo_ros.reading.plausible import check_run
-    from pneumo_ros.records import read_recording
-    from pneumo_ros.records.corrections import corrected, parse_words
-    from pneumo_ros.runs.cuts import parse_cuts, without
-    from pneumo_ros.runs.run import make_run
+def read_options(options: argparse.Namespace) -> "ReadOptions":
+    """--namespace, --joint and --read-as; UsageError for unknown words."""
+    from pneumo_ros.reading.read import ReadOptions
+    from pneumo_ros.records.corrections import parse_words
 
-    words = parse_words(options.read_as)
-    recording = read_recording(path, options.namespace, options.joint)
-    recording = corrected(recording, words, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
-    for warning in recording.warnings:
-        console.note(f"{recording.name}: {warning}")
-    cuts = parse_cuts(getattr(options, "cut", ()))  # not every verb has the option
-    run = without(make_run(recording, model.force_driven), cuts.get(Path(path).resolve(), ()))
-    for note in check_run(model, run):
-        console.note(f"{recording.name}: {note}.")
-    return recording, run
+    return ReadOptions(options.namespace, options.joint, parse_words(options.read_as))
 
 
-def read_runs(bags: Sequence[str], options: argparse.Namespace, console: Console, model: "Model") -> "list[Run]":
-    """The recordings named, on uniform grids; what is wrong with them is noted, or DataError says why it is too much.
+def _cuts(options: argparse.Namespace) -> "dict[Path, tuple[Cut, ...]]":
+    from pneumo_ros.runs.cuts import parse_cuts
 
-    `options` are those of `add_recordings`, by which recordings are read; `model` is what they should fit.
+    return parse_cuts(getattr(options, "cut", ()))  # not every verb has the option
+
+
+def read_one(path: str, options: argparse.Namespace, console: Console, model: "Model") -> "Reading":
+    """One recording as a run for `model`, read as `options` (of `add_recordings`) say; its notes are printed.
+
+    Raises DataError when it cannot be used.
     """
-    return [read_run(bag, options, console, model)[1] for bag in bags]
+    from pneumo_ros.reading.read import read_run
+
+    reading = read_run(path, model, read_options(options), _cuts(options).get(Path(path).resolve(), ()))
+    for note in reading.notes:
+        console.note(f"{reading.recording.name}: {note}")
+    return reading
+
+
+def read_named(bags: Sequence[str], options: argparse.Namespace, console: Console, model: "Model") -> "list[Run]":
+    """The recordings named, each of which must be usable, as runs for `model`; otherwise as `read_one`."""
+    return [read_one(bag, options, console, model).run for bag in bags]
 
 
 def read_expanded(
@@ -72,25 +73,12 @@ def read_expanded(
 
     A recording that was named itself must be usable: DataError says why it is not.
     """
-    runs, passed = [], {}
+    from pneumo_ros.reading.read import read_runs
+
     with console.progress("Reading") as progress:
-        for done, (path, from_folder) in enumerate(paths.items()):
-            progress(done / len(paths))
-            try:
-                runs.append(read_run(path, options, console, model)[1])
-            except DataError as problem:
-                if not from_folder:
-                    raise
-                passed[path] = str(problem)
-                console.note(f"Passed over: {problem}")
-    if not runs:
-        raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(passed.values())[-1]}")
-    return _told_apart(runs, [path for path in paths if path not in passed]), passed
-
-
-def _told_apart(runs: "list[Run]", paths: Sequence[str]) -> "list[Run]":
-    """Runs of the same name are called by their paths."""
-    names = [run.name for run in runs]
-    return [
-        replace(run, name=path) if names.count(run.name) > 1 else run for run, path in zip(runs, paths, strict=True)
-    ]
+        found = read_runs(
+            list(paths), model, read_options(options), _cuts(options),
+            required=[path for path, from_folder in paths.items() if not from_folder],
+            progress=progress, note=console.note, refuse=lambda path, why: console.note(f"Passed over: {why}"),
+        )  # fmt: skip
+    return found.runs, dict(found.refused)

@@ -10,9 +10,8 @@ from pneumo_ros.diagnose.search import Search
 from pneumo_ros.errors import DataError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.plant import Model, load_model
-from pneumo_ros.reading.plausible import check_run
-from pneumo_ros.records import read_recording
-from pneumo_ros.runs.run import Run, make_run
+from pneumo_ros.reading.read import read_runs
+from pneumo_ros.runs.run import Run
 
 HELD = "hold"  # recordings of such names are not fitted: they judge
 NORMAL = 1.96  # deviations of a 95 % interval
@@ -27,26 +26,13 @@ def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing
     and verdict is null. Raises DataError when no recording can be used, UsageError as `load_model`.
     """
     machine = load_model(model, tuple(effects))
-    runs, passed = _read(machine, paths)
-    held = [run for run in runs if run.name.startswith(HELD)]
+    readings = read_runs(paths, machine)
+    passed = {Path(path).name: why for path, why in readings.refused.items()}
+    runs = readings.runs
+    held = [run for run in runs if Path(run.name).name.startswith(HELD)]
     fitted = [run for run in runs if run not in held]
     found: dict[str, Any] = {"parameters": {}, "added": [], "verdict": None, "undetermined": {}, "passed_over": passed}
     return found | (_diagnosis if diagnosing and held and fitted else _identification)(machine, fitted or held, held)
-
-
-def _read(machine: Model, paths: Sequence[str]) -> tuple[list[Run], dict[str, str]]:
-    """The runs that can be used, and why others cannot; names are those of their folders."""
-    runs, passed = [], {}
-    for path in paths:
-        try:
-            run = make_run(read_recording(path), machine.force_driven)
-            check_run(machine, run)
-            runs.append(run)
-        except DataError as error:
-            passed[Path(path).name] = str(error)
-    if not runs:
-        raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(passed.values())[-1]}")
-    return runs, passed
 
 
 def _identification(machine: Model, runs: list[Run], held: list[Run]) -> dict[str, Any]:

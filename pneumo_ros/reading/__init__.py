@@ -1,1 +1,1 @@
-"""Whether a recording can be what it says it is: wiring, signs, units, dead sensors, parts where nothing moves."""
+"""Recordings as runs, and whether they can be what they say: wiring, signs, units, dead sensors, idle parts."""

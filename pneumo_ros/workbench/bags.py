@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Literal
 
 from pneumo_ros.errors import PneumoError
-from pneumo_ros.records import Recording, read_recording
-from pneumo_ros.records.corrections import corrected, parse_words
+from pneumo_ros.reading.read import ReadOptions, corrected_recording
+from pneumo_ros.records import Recording
 from pneumo_ros.records.folders import recordings_in
 
 Role = Literal["fit", "hold", "out"]
@@ -17,18 +17,10 @@ _HELD = "hold"  # recordings of such names are meant to be held out
 _KEPT = 32  # recordings in memory: 10 minutes at 1 kHz take 40 MB
 
 
-@dataclass(frozen=True)
-class Reading:
-    """How recordings are read: the options --namespace, --joint and --read-as of the verbs."""
-
-    namespace: str | None = None
-    joint: str | None = None
-    read_as: str = ""
-
-    def options(self) -> list[str]:
-        """As words of a command line."""
-        given = {"--namespace": self.namespace, "--joint": self.joint, "--read-as": self.read_as}
-        return [word for key, value in given.items() if value for word in (key, value)]
+def reading_options(how: ReadOptions) -> list[str]:
+    """--namespace, --joint and --read-as of the verbs, as words of a command line."""
+    given = {"--namespace": how.namespace, "--joint": how.joint, "--read-as": ",".join(how.words)}
+    return [word for key, value in given.items() if value for word in (key, value)]
 
 
 @dataclass(frozen=True)
@@ -64,25 +56,24 @@ def _told_apart(bags: list[Bag]) -> list[Bag]:
     return [Bag(f"{Path(b.path).parent.name}/{b.name}", b.path, b.role) if names.count(b.name) > 1 else b for b in bags]
 
 
-def read(path: Path, reading: Reading, atmosphere: float) -> Recording:
+def read(path: Path, how: ReadOptions, atmosphere: float) -> Recording:
     """The recording at `path`, kept in memory until its file changes; `atmosphere` [Pa] is added to gauge pressures.
 
-    Raises DataError when it cannot be read, UsageError for wrong words of `reading`.
+    Raises DataError when it cannot be read.
     """
     newest = max((inner.stat().st_mtime_ns for inner in [path, *path.glob("*")]), default=0) if path.exists() else 0
-    return _read(path, newest, reading, atmosphere)
+    return _read(path, newest, how, atmosphere)
 
 
 @lru_cache(_KEPT)
-def _read(path: Path, newest: int, reading: Reading, atmosphere: float) -> Recording:
-    words = parse_words(reading.read_as)
-    return corrected(read_recording(path, reading.namespace, reading.joint), words, atmosphere)
+def _read(path: Path, newest: int, how: ReadOptions, atmosphere: float) -> Recording:
+    return corrected_recording(path, how, atmosphere)
 
 
-def problem_of(path: Path, reading: Reading, atmosphere: float) -> str:
+def problem_of(path: Path, how: ReadOptions, atmosphere: float) -> str:
     """Why a recording cannot be read; empty when it can."""
     try:
-        read(path, reading, atmosphere)
+        read(path, how, atmosphere)
     except PneumoError as error:
         return str(error)
     return ""

@@ -7,14 +7,12 @@ from pathlib import Path
 
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.plant import Model, save_model
-from pneumo_ros.workbench.bags import Reading
+from pneumo_ros.reading.read import ATMOSPHERE, ReadOptions
 from pneumo_ros.workbench.job import Job
 from pneumo_ros.workbench.live import Live
 from pneumo_ros.workbench.plans import Bench, Plan, campaign_plan, compare_plan, diagnose_plan, refit_plan
 from pneumo_ros.workbench.shelf import Shelf
 from pneumo_ros.workbench.variant import Compared, Variant, model_of
-
-_ATMOSPHERE = 101325.0  # Pa, for machines that do not say
 
 
 @dataclass(frozen=True)
@@ -22,7 +20,7 @@ class Given:
     """What the command line gave: recordings, how to read them, the machine file, files of effects."""
 
     bags: tuple[str, ...] = ()
-    reading: Reading = field(default_factory=Reading)
+    how: ReadOptions = field(default_factory=ReadOptions)
     machine: str = "axis"
     effects: tuple[str, ...] = ()
 
@@ -42,8 +40,8 @@ class Desk:
         self.job: Job | None = None
         self.live: Live | None = None
         self._jobs = 0
-        atmosphere = self.model().parameters.get("air.atmospheric_pressure", _ATMOSPHERE)
-        self.shelf = Shelf(folder, given.reading, atmosphere, self.changed)
+        atmosphere = self.model().parameters.get("air.atmospheric_pressure", ATMOSPHERE)
+        self.shelf = Shelf(folder, given.how, atmosphere, self.changed)
         self.opened: tuple[int, str] = (0, "")  # which job showed its result last, and on which tab
         self.shelf.take(given.bags)
 
@@ -139,7 +137,7 @@ class Desk:
 
     def _bench(self) -> Bench:
         effects = tuple(str(Path(path).resolve()) for path in self.given.effects)
-        return Bench(self.shelf.bags, self.given.reading, self.variant.machine, effects)
+        return Bench(self.shelf.bags, self.given.how, self.variant.machine, effects)
 
     def _start(self, make: Callable[[int], Plan]) -> None:
         with self.lock:

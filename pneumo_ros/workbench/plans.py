@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.workbench.bags import Bag, Reading
+from pneumo_ros.reading.read import ReadOptions
+from pneumo_ros.workbench.bags import Bag, reading_options
 from pneumo_ros.workbench.job import Line
 
 _EFFECT_LINE, _COMPARE_LINE, _DIAGNOSE_LINE = 6.0, 1.0, 12.0  # shares of a job's time
@@ -16,7 +17,7 @@ class Bench:
     """What every verb is told: the recordings, how to read them, the machine file and files of effects."""
 
     bags: tuple[Bag, ...]
-    reading: Reading
+    how: ReadOptions
     machine: str
     effects: tuple[str, ...]
 
@@ -32,7 +33,7 @@ class Bench:
         """--model, --effects, and how to read and cut."""
         effects = [word for path in self.effects for word in ("--effects", path)]
         cuts = [word for bag in self.used() for word in bag.cut_options()]
-        return ["--model", machine, *effects, *self.reading.options(), *cuts]
+        return ["--model", machine, *effects, *reading_options(self.how), *cuts]
 
 
 @dataclass(frozen=True)

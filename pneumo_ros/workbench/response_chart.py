@@ -61,11 +61,11 @@ def _trace(role: str, time: Any, values: Any) -> dict[str, Any]:
 @lru_cache(8)
 def _begun(desk: Desk, _chosen: int, name: str, span: Span) -> Any:
     """The stretch with its start, and the response of the machine at hand."""
-    from pneumo_ros.runs.run import make_run
+    from pneumo_ros.reading.read import checked_run
     from pneumo_ros.workbench.response import respond, stretch
 
     bag = desk.shelf.bag(name)
     assert bag is not None
     model = desk.model()
-    part = stretch(model, make_run(desk.shelf.recording(bag), model.force_driven), *span)
+    part = stretch(model, checked_run(desk.shelf.recording(bag), model)[0], *span)
     return part, respond(model, part)

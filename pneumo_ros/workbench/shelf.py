@@ -6,8 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.records import Recording
-from pneumo_ros.workbench.bags import ROLES, Bag, Reading, Role, found_bags, problem_of, read
+from pneumo_ros.workbench.bags import ROLES, Bag, Role, found_bags, problem_of, read
 
 
 class Shelf:
@@ -16,8 +17,8 @@ class Shelf:
     Paths below `folder` are told from there; `atmosphere` [Pa] is added to gauge pressures.
     """
 
-    def __init__(self, folder: Path, reading: Reading, atmosphere: float, changed: Callable[[], None]) -> None:
-        self.folder, self.reading, self.atmosphere = folder, reading, atmosphere
+    def __init__(self, folder: Path, how: ReadOptions, atmosphere: float, changed: Callable[[], None]) -> None:
+        self.folder, self.how, self.atmosphere = folder, how, atmosphere
         self.bags: tuple[Bag, ...] = ()
         self._changed, self._lock = changed, threading.RLock()
 
@@ -25,7 +26,7 @@ class Shelf:
         """Lay more recordings on the desk; those that cannot be read say why."""
         have = {self.path(bag) for bag in self.bags}
         new = [bag for bag in found_bags(paths, self.folder) if self.path(bag) not in have]
-        seen = [replace(bag, problem=problem_of(self.path(bag), self.reading, self.atmosphere)) for bag in new]
+        seen = [replace(bag, problem=problem_of(self.path(bag), self.how, self.atmosphere)) for bag in new]
         with self._lock:
             taken = {bag.name for bag in self.bags}
             self.bags += tuple(replace(b, name=f"{b.name} ({b.path})") if b.name in taken else b for b in seen)
@@ -37,7 +38,7 @@ class Shelf:
 
     def recording(self, bag: Bag) -> Recording:
         """What a usable bag holds."""
-        return read(self.path(bag), self.reading, self.atmosphere)
+        return read(self.path(bag), self.how, self.atmosphere)
 
     def bag(self, name: str | None) -> Bag | None:
         """The usable recording of that name, else the first one; None when there is none."""

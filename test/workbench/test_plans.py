@@ -10,7 +10,8 @@ from workbench.conftest import Served
 from pneumo_ros.command.main import main
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
-from pneumo_ros.workbench.bags import Bag, Reading, found_bags
+from pneumo_ros.reading.read import ReadOptions
+from pneumo_ros.workbench.bags import Bag, found_bags
 from pneumo_ros.workbench.desk import Desk, Given, commands
 from pneumo_ros.workbench.plans import Bench, campaign_plan, compare_plan, diagnose_plan, refit_plan
 
@@ -18,7 +19,7 @@ BAGS = (
     Bag("a", "/data/a", "fit", cuts=((1.0, 2.5),)), Bag("b", "/data/b", "hold"), Bag("c", "/data/c", "out"),
     Bag("d", "/data/d", "fit", problem="broken"),
 )  # fmt: skip
-BENCH = Bench(BAGS, Reading(namespace="rig", read_as="bar"), "axis_1.yaml", ("/data/mine.py",))
+BENCH = Bench(BAGS, ReadOptions(namespace="rig", words=("bar",)), "axis_1.yaml", ("/data/mine.py",))
 HOW = "--model axis_1.yaml --effects /data/mine.py --namespace rig --read-as bar --cut /data/a:1-2.5"
 
 
@@ -47,7 +48,7 @@ def test_the_campaign_is_an_experiment() -> None:
 
 
 def test_a_diagnosis_needs_both_roles() -> None:
-    alone = Bench(BAGS[:1], Reading(), "axis", ())
+    alone = Bench(BAGS[:1], ReadOptions(), "axis", ())
     with pytest.raises(UsageError, match="mark one 'hold out'"):
         diagnose_plan(alone, "axis_1.yaml", 1)
 

@@ -24,7 +24,7 @@ from pneumo_ros.files import check_new_folder
 
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison
-    from pneumo_ros.records import Recording
+    from pneumo_ros.reading.read import Reading
 
 SECONDS = 16.0  # that the axis runs
 SEEDS = 10_000  # to draw from where none is given
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if not (math.isfinite(options.seconds) and options.seconds >= 4.0):
         raise UsageError(f"--seconds is {options.seconds:g}; it takes at least 4, so that there is something to see")
     seed, rig = _seed(options.seed), _rig(options.rig)
-    other = _recording(options.recording) if options.recording else None
+    other = _read(options.recording) if options.recording else None
     folder = check_new_folder(options.out) if options.out else _next_folder(Path("demo_output"))
     folder.mkdir(parents=True)
     result: dict[str, Any] = {"schema_version": 1, "seed": seed, "rig": rig, **_axis(folder, options.seconds, console)}
@@ -90,31 +90,31 @@ def _axis(folder: Path, seconds: float, console: Console) -> dict[str, Any]:
     console.say(f"\nExit codes: {', '.join(f'{name} {code}' for name, code in codes.items())}")
     if busy := hardship(bag):
         console.say(f"\n{busy}")
-    recording = _recording(bag)
+    reading = _read(bag)
     console.say("\n2. It moves: piston position (*) and reference (-)\n")
-    console.say(motion(recording, seconds))
+    console.say(motion(reading.recording, seconds))
     console.say("\n3. The model against the recording just made\n")
-    own = _compare(recording, console)
+    own = _compare(reading, console)
     console.say(f"\n{OWN_ERROR}")
     return {"bag": bag, "exit_codes": codes, "own": own.as_dict()}
 
 
-def _recording(path: "Path | str") -> "Recording":
-    from pneumo_ros.records import read_recording
+def _read(path: "Path | str") -> "Reading":
+    from pneumo_ros.plant import load_model
+    from pneumo_ros.reading.read import read_run
 
-    return read_recording(path)
+    return read_run(path, load_model())
 
 
-def _compare(recording: "Recording", console: Console) -> "Comparison":
+def _compare(reading: "Reading", console: Console) -> "Comparison":
     """The default machine against a recording, printed."""
     from pneumo_ros.compare.compare import compare
     from pneumo_ros.plant import load_model
-    from pneumo_ros.runs.run import make_run
 
-    for warning in recording.warnings:
-        console.note(f"{recording.name}: {warning}")
+    for note in reading.notes:
+        console.note(f"{reading.recording.name}: {note}")
     with console.progress("Comparing") as progress:
-        comparison = compare(load_model(), [make_run(recording)], progress=lambda share, _: progress(share))
+        comparison = compare(load_model(), [reading.run], progress=lambda share, _: progress(share))
     console.say(run_text(comparison.runs[0], comparison.horizon))
     console.say()
     console.say(equations_text(comparison))

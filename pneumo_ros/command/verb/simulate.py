@@ -10,7 +10,7 @@ from pneumo_ros import __version__
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, program
 from pneumo_ros.command.inputs import FORMS, parse_drive
-from pneumo_ros.command.recordings import read_run
+from pneumo_ros.command.recordings import read_one
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
 
@@ -123,7 +123,8 @@ def _replay(options: argparse.Namespace, model: "Model", console: Console) -> Pl
     from pneumo_ros.runs.run import PARTS
     from pneumo_ros.shooting.start import start_states
 
-    recording, run = read_run(options.input, options, console, model)
+    reading = read_one(options.input, options, console, model)
+    recording, run = reading.recording, reading.run
     if options.rate is not None:
         raise UsageError(f"leave out --rate: a replay keeps the {1.0 / recording.sample_time:.0f} Hz of its recording")
     samples = len(run) - 1 if options.seconds is None else round(options.seconds / run.sample_time)

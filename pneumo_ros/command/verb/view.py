@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_output, add_recordings
 from pneumo_ros.command.console import Console
-from pneumo_ros.command.recordings import ATMOSPHERE, expanded
+from pneumo_ros.command.recordings import expanded, read_options
 from pneumo_ros.environment import require_libraries
 from pneumo_ros.errors import DataError
 
@@ -43,10 +43,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, console: Console) -> int:
     """Read each, print it, and say which could not be read."""
     require_libraries(("rich",))
+    from pneumo_ros.reading.read import corrected_recording
+
+    how = read_options(options)
     paths, found, problems = expanded(options.bags, console), list[dict[str, Any]](), list[str]()
     for path in paths:
         try:
-            recording = _read(path, options)
+            recording = corrected_recording(path, how)
         except DataError as problem:
             problems.append(str(problem))
             console.note(f"Passed over: {problem}")
@@ -57,14 +60,6 @@ def run(options: argparse.Namespace, console: Console) -> int:
         raise DataError(problems[-1])
     console.json({"schema_version": 1, "recordings": found, "passed_over": problems})
     return 0
-
-
-def _read(path: str, options: argparse.Namespace) -> "Recording":
-    from pneumo_ros.records import read_recording
-    from pneumo_ros.records.corrections import corrected, parse_words
-
-    recording = read_recording(path, options.namespace, options.joint)
-    return corrected(recording, parse_words(options.read_as), ATMOSPHERE)
 
 
 def summary(recording: "Recording") -> dict[str, Any]:

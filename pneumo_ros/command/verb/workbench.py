@@ -13,6 +13,7 @@ from collections.abc import Iterator
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings
 from pneumo_ros.command.console import Console
+from pneumo_ros.command.recordings import read_options
 from pneumo_ros.environment import require_libraries
 
 PORT = 8765
@@ -30,12 +31,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, console: Console) -> int:
     """Serve until Ctrl-C."""
     require_libraries(("dash", "plotly", "waitress"))
-    from pneumo_ros.workbench.bags import Reading
     from pneumo_ros.workbench.desk import Given
     from pneumo_ros.workbench.serve import serve
 
-    reading = Reading(options.namespace, options.joint, options.read_as)
-    given = Given(tuple(options.bags), reading, options.model, tuple(options.effects))
+    given = Given(tuple(options.bags), read_options(options), options.model, tuple(options.effects))
 
     def ready(address: str) -> None:
         console.say(address)

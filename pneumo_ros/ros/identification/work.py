@@ -8,17 +8,16 @@ import math
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from typing import Any
 
 from pneumo_ros.compare.moved import refit_dict
-from pneumo_ros.errors import DataError, PneumoError
+from pneumo_ros.errors import PneumoError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Library, Model, model_from_dict
-from pneumo_ros.records import read_recording
-from pneumo_ros.runs.run import Run, make_run
+from pneumo_ros.reading.read import ReadOptions, read_runs
+from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import refit
 
 NICE = 5  # whoever controls something comes first
@@ -68,7 +67,7 @@ def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
     begun = time.monotonic()
     parts = PARTS_WITH_REFIT if job["whole_model"] else PARTS
     model = model_from_dict(job["machine"], job["name"], Library(job["files"]))
-    runs, refused = read(job["bags"], job["axis"], job["joint_name"], report, report.part(*parts[0:2]))
+    runs, refused = read(job, model, report, report.part(*parts[0:2]))
     found = identify(model, runs, progress=report.part(*parts[1:3]))
     result = summary(found, runs) | {"refused_recordings": refused, "recordings": [run.name for run in runs]}
     after: Model = found.model
@@ -80,25 +79,18 @@ def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
 
 
 def read(
-    paths: Sequence[str], axis: str, joint_name: str, report: Report, progress: Callable[[float, str], None]
+    job: dict[str, Any], model: Model, report: Report, progress: Callable[[float, str], None]
 ) -> tuple[list[Run], dict[str, str]]:
-    """Runs, and by path the reasons why others are refused; runs of the same name are told apart by their paths."""
-    runs, refused = dict[str, Run](), dict[str, str]()
-    for done, path in enumerate(paths):
-        progress(done / len(paths), "reading recordings")
-        try:
-            recording = read_recording(path, axis or None, joint_name or None)
-            runs[path] = make_run(recording)
-        except PneumoError as error:
-            refused[path] = str(error)
-            report.line(refused=path, reason=str(error))
-            continue
-        for sentence in recording.warnings:
-            report.line(warning=f"{recording.name}: {sentence}")
-    if not runs:
-        raise DataError(f"none of {len(paths)} recordings can be used; the last: {list(refused.values())[-1]}")
-    names = [run.name for run in runs.values()]
-    return [replace(run, name=path) if names.count(run.name) > 1 else run for path, run in runs.items()], refused
+    """The runs of a job's recordings, and by path the reasons why others are refused; see `read_runs`."""
+    found = read_runs(
+        job["bags"],
+        model,
+        ReadOptions(job["axis"] or None, job["joint_name"] or None),
+        progress=lambda share: progress(share, "reading recordings"),
+        note=lambda text: report.line(warning=text),
+        refuse=lambda path, reason: report.line(refused=path, reason=reason),
+    )
+    return found.runs, dict(found.refused)
 
 
 def main() -> int:
