@@ -43,6 +43,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "held_out": list(outcome.held),
         "rounds": len(outcome.steps),
         "input_delay_s": outcome.late,
+        "limits": list(outcome.limits),
     }
 
 

@@ -48,12 +48,10 @@ class Fleet:
     def wait(self, seconds: float) -> None:
         """Let time pass; PneumoError, with the last words of its log, as soon as a process has ended."""
         end = time.monotonic() + seconds
-        while True:
-            self.check()
-            left = end - time.monotonic()
-            if left <= 0.0:
-                return
+        self.check()
+        while (left := end - time.monotonic()) > 0.0:
             time.sleep(min(left, 0.1))
+            self.check()
 
     def check(self) -> None:
         """PneumoError when a process has ended by itself."""

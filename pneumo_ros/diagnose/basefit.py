@@ -23,8 +23,11 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-ITERATIONS = 8  # sets of slopes
-FAITHFUL = 0.8  # of the decrease that slopes promise: who keeps less asks for new ones
+ITERATIONS, ROUNDS = 8, 12  # sets of slopes, and rounds with each of them
+FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
+LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: a smaller gain is not worth another round
+SHARES = (1.0, 0.3, 0.1)  # of a step, tried at once
+REWEIGHTED = 3  # least-squares solutions of a round, each with the weights of the one before
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,15 @@ class Known:
     def offset(self, model: Model) -> Array:
         """How far the parameters (free,) of `model` are from the centres, in standard deviations."""
         return np.asarray((np.array([model[n] for n in self.names]) - self.centre) / self.prior)
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fitted model, the sets of slopes it took, and whether it settled: if not, the bound on rounds was reached."""
+
+    model: Model
+    taken: int
+    settled: bool
 
 
 def strain(offset: Array) -> float:
@@ -63,42 +75,83 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
     return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
-def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS) -> Model:
-    """Gauss-Newton from `model`, within what is known; the model found.
+def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS) -> Fitted:
+    """Gauss-Newton from `model`, within what is known of its parameters.
 
-    Slopes are taken anew only where those of an earlier model bring no more: they hardly change, and cost most.
+    Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
+    model is visited twice. Slopes are renewed only where those of an earlier model bring no more: they hardly change,
+    and cost most. Rounds end when renewed slopes bring no more, at the latest after `iterations` sets of slopes and
+    `ROUNDS` rounds for each of them.
     """
-    here, names, middle, prior = model, known.names, known.centre, known.prior
-    low = np.array([model.specification(n).low for n in names])
-    high = np.array([model.specification(n).high for n in names])
-    r, J = slopes(evidence, here, known)
-    taken, fresh = 1, True
-    while True:
-        theta = np.array([here[n] for n in names])
-        offset, scale = (theta - middle) / prior, family_scales(evidence, r)
-        after, x, room = r, np.zeros(len(names)), ((low - theta) / prior, (high - theta) / prior)
-        for _ in range(3):
-            x = solve_within(J, r, weights(evidence, after, scale), np.ones(len(names)), offset, *room)
-            after = r + J @ x
-        before, expected = _cost(evidence, r, offset, scale), _cost(evidence, after, offset + x, scale)
-        steps = [np.clip(theta + share * x * prior, low, high) for share in (1.0, 0.3, 0.1)]
-        tried = residuals(evidence, here, [dict(zip(names, new.tolist(), strict=True)) for new in steps])
-        costs = [_cost(evidence, t, (new - middle) / prior, scale) for t, new in zip(tried, steps, strict=True)]
-        best = int(np.argmin(costs))
-        gain = before - costs[best]
+    descent = _Descent(evidence, known, model)
+    for taken in range(1, iterations + 1):
+        descent.renew()
+        for number in range(ROUNDS):
+            gain, promised = descent.step()
+            if number == 0 and descent.little(gain):
+                return Fitted(descent.model, taken, True)
+            if descent.little(gain) or gain < FAITHFUL * promised:
+                break
+    return Fitted(descent.model, iterations, False)
+
+
+class _Descent:
+    """A model on its way to the best fit: its residual, the slopes taken last, and what each step gained."""
+
+    def __init__(self, evidence: Evidence, known: Known, model: Model) -> None:
+        self.evidence, self.known, self.model = evidence, known, model
+        specified = [model.specification(n) for n in known.names]
+        self.low, self.high = np.array([s.low for s in specified]), np.array([s.high for s in specified])
+        self.residual = self.slopes = np.empty(0)
+
+    def renew(self) -> None:
+        """Take slopes at the model reached."""
+        self.residual, self.slopes = slopes(self.evidence, self.model, self.known)
+
+    def little(self, gain: float) -> bool:
+        """Whether a gain in log likelihood is not worth another round."""
+        return gain < LITTLE + SMALL_SHARE * _loss(self.evidence, self.residual)
+
+    def step(self) -> tuple[float, float]:
+        """Take the best of some shares of the next step, if it gains; the gain, and what the slopes promised."""
+        names, prior = self.known.names, self.known.prior
+        theta = np.array([self.model[n] for n in names])
+        offset = (theta - self.known.centre) / prior
+        x, after = self._wanted(theta, offset)
+        before = _objective(self.evidence, self.residual, offset)
+        promised = _objective(self.evidence, after, offset + x) - before
+        tried = [np.clip(theta + share * x * prior, self.low, self.high) for share in SHARES]
+        variants = [dict(zip(names, values.tolist(), strict=True)) for values in tried]
+        residual = residuals(self.evidence, self.model, variants)
+        offsets = [(values - self.known.centre) / prior for values in tried]
+        found = [_objective(self.evidence, r, o) for r, o in zip(residual, offsets, strict=True)]
+        best = int(np.argmax(found))
+        gain = found[best] - before
         if gain > 0.0:
-            here, r = here.with_parameters(dict(zip(names, steps[best].tolist(), strict=True))), tried[best]
-        little = gain < 0.5 + 1e-4 * before
-        if (little and fresh) or (taken == iterations and (little or not fresh)):
-            return here
-        fresh = taken < iterations and (little or gain < FAITHFUL * (before - expected))
-        if fresh:
-            r, J = slopes(evidence, here, known)
-            taken += 1
+            self.model, self.residual = self.model.with_parameters(variants[best]), residual[best]
+        return gain, promised
+
+    def _wanted(self, theta: Array, offset: Array) -> tuple[Array, Array]:
+        """Step in priors by reweighted least squares within the ranges, and the residual that the slopes promise."""
+        room = (self.low - theta) / self.known.prior, (self.high - theta) / self.known.prior
+        after, x, ones = self.residual, np.zeros(len(theta)), np.ones(len(theta))
+        scale = family_scales(self.evidence, self.residual)
+        for _ in range(REWEIGHTED):
+            w = weights(self.evidence, after, scale)
+            x = solve_within(self.slopes, self.residual, w, ones, offset, *room)
+            after = self.residual + self.slopes @ x
+        return x, after
 
 
-def _cost(evidence: Evidence, r: Array, offset: Array, scale: Array) -> float:
-    return float(OVERLAP**2 * np.sum(huber(r / scale[evidence.family]))) + strain(offset)
+def _objective(evidence: Evidence, residual: Array, offset: Array) -> float:
+    """What a fit maximises: the log likelihood with the scales that the residual itself has, and that of the priors."""
+    return log_likelihood(evidence, residual) - strain(offset)
+
+
+def _loss(evidence: Evidence, residual: Array) -> float:
+    """Robust loss of a residual in its own scales: about half the number of independent windows."""
+    scale = family_scales(evidence, residual)
+    return float(OVERLAP**2 * np.sum(huber(residual / scale[evidence.family])))
 
 
 def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> BaseFit:

@@ -37,7 +37,7 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
     Each may move by what is known of it. None where less than half of what remains is gone, or nothing remains.
     """
     own = _own(fitter, model)
-    other = fit_base(fitter.held, model, own)
+    other = fitter.noted(fit_base(fitter.held, model, own))
     before, after = (_beyond_noise(m, fitter.held.runs, equation) for m in (model, other))
     share = 1.0 - after / max(before, REMAINING)
     if share < MOSTLY or before < REMAINING:

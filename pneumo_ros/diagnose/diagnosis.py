@@ -84,6 +84,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         interrupted=found.interrupted,
         train=tuple(run.name for run in search.train.runs),
         held=tuple(run.name for run in held),
+        limits=tuple(dict.fromkeys(search.fitter.limits)),
         late=search.late,
     )  # fmt: skip
 

@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.basefit import ITERATIONS, Known, base_fit, fit_base, strain
+from pneumo_ros.diagnose.basefit import ITERATIONS, Fitted, Known, base_fit, fit_base, strain
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile, kinds
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import conditions, freed, relative
@@ -43,6 +43,7 @@ class Fitter:
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train = Evidence(start, train)
+        self.limits: list[str] = []  # a sentence for every loop that ended at its bound
         self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
         self._at_best = lru_cache(1)(lambda model: self._likelihood(self.refit(model)))
 
@@ -73,7 +74,13 @@ class Fitter:
 
     def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:
         """All free parameters but those `fixed` fitted to the training evidence."""
-        return fit_base(self.train, model, self.known(model, fixed), iterations)
+        return self.noted(fit_base(self.train, model, self.known(model, fixed), iterations))
+
+    def noted(self, fitted: Fitted) -> Model:
+        """The fitted model; where the fit ended at its bound, `limits` says so."""
+        if not fitted.settled:
+            self.limits.append(f"a fit of '{', '.join(fitted.model.effects)}' did not settle in {fitted.taken} rounds")
+        return fitted.model
 
     def simplest(self, model: Model, name: str) -> Model:
         """The model, or one refitted with a size of its effect `name` neutral, if that explains as much.

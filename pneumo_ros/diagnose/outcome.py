@@ -89,4 +89,5 @@ class Outcome:
     interrupted: bool = False
     train: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()  # a sentence for every loop of the search that ended at its bound
     late: float = 0.0  # s, by which a measured force was put off, as positions come after it

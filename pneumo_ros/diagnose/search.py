@@ -32,7 +32,7 @@ Progress = Callable[[float, str], None]
 
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
-MOST = 4  # effects added
+MOST, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
 VANISHED = "nothing of it is left beside what was added since"
 UNHELPFUL = "predictions of held-out runs over 1 s get no better with it"
 
@@ -74,7 +74,7 @@ class Search:
         refused = vanished  # beside this model: another one may make room for it
         least = before  # of all models so far: what mends an added law of another shape is no effect
         try:
-            while True:
+            for _ in range(ROUNDS):
                 k = len(model.effects) - len(base.effects)
                 self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
                 step = self.round(model, refused)
@@ -92,6 +92,9 @@ class Search:
                 steps = [without(s, gone, VANISHED) for s in (*steps, step)]
                 model, before = new, after
                 least = {name: min(least[name], error) for name, error in after.items()}
+            else:
+                self.fitter.limits.append(f"the search ended after {ROUNDS} rounds with candidates left to try")
+                steps.append(replace(self.round(model, refused), added=None))
             self.progress(0.85, "looking at breakaways and reversals")
             new, last = self.slip_round(model)
             if last is not None and last.added is not None and pays(least, self.predicted(new)):
@@ -121,7 +124,8 @@ class Search:
         made = self.slips(model)
         if made is None:
             return model
-        new = with_values_of(model, polished(*made, self.fitter.deviations(model), self.fitter.added(model)))
+        deviations = self.fitter.deviations(model)
+        new = with_values_of(model, polished(*made, deviations, self.fitter.added(model), self.fitter.limits))
         return new if not model.force_driven or self._predicts_training(new, model) else model
 
     def settled(self, model: Model) -> Model:
@@ -152,7 +156,7 @@ class Search:
             return model, None
         first = model.effects == self.start.effects
         against = partial(self.fitter.against, model)
-        return longer(model, made, ranked.screened, self.fitter.deviations(model), against, first)
+        return longer(model, made, ranked.screened, self.fitter.deviations(model), against, first, self.fitter.limits)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
         """The candidates tried beside a model and the best of them, but for those `refused`, and why."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -28,6 +28,7 @@ TRIED = 3  # candidates that are fitted, of all that begin well
 ENOUGH = 0.9  # share of the error beyond the noise's
 PART = 0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
 RESIZED, BETTER = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
+RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: starts of a state that an effect has for itself are free in every event, and so follow any slow force
 CONTRADICTED = 10.0
 Against = Callable[[str, Mapping[str, float]], float]  # of an effect's name and values: what the equations lose by it
@@ -53,11 +54,13 @@ def longer(
     known: dict[str, float],
     against: Against,
     first: bool,
+    limits: list[str],
 ) -> tuple[Model, Step | None]:
     """The model with the effect that its breakaways and reversals ask for, and the trials; None where they are fine.
 
     `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: what the equations
-    along the motion say of an effect beside it; `first`: nothing was added.
+    along the motion say of an effect beside it; `first`: nothing was added; `limits` takes a sentence for every loop
+    that ended at its bound.
     """
     alone, found = made
     segments = found.train(alone)
@@ -66,7 +69,7 @@ def longer(
     if not poor:
         return model, None
     q = poor[0]
-    tried = Candidates(alone, found, known, against, held, q).tried(blind(screened, alone))
+    tried = Candidates(alone, found, known, against, held, q, limits).tried(blind(screened, alone))
     effects = [coordinates(alone.library.find(c.name)) for c in tried]
     trials = [as_trial(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)]
     good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
@@ -91,6 +94,7 @@ class Candidates:
     against: Against
     held: Array
     q: float
+    limits: list[str] = field(default_factory=list)  # a sentence for every loop that ended at its bound
 
     def tried(self, names: Sequence[str]) -> list[Slipping]:
         """Those of the named effects that look best, fitted to the training events; smallest errors first.
@@ -137,11 +141,16 @@ class Candidates:
     def _followed(self, c: Slipping, factor: float) -> Slipping:
         """The last of the fits that begin at so many times the size of the one before and are better."""
         effect = coordinates(self.alone.library.find(c.name))
-        while not self._explains(c):
+        for _ in range(RESIZINGS):
+            if self._explains(c):
+                return c
             new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
             if not self._better(new, c):
-                break
+                return c
             c = new
+        self.limits.append(
+            f"fits of {c.name} to breakaways still got better after its size was changed {RESIZINGS} times"
+        )
         return c
 
     def _better(self, new: Slipping, old: Slipping) -> bool:

@@ -30,7 +30,7 @@ SURE = 0.02  # share of its value by which a parameter may be uncertain and stil
 POOR = (
     1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
 )
-STALLED = 0.5  # of the error it began with: a refit that leaves more is not begun anew
+STALLED, REFITS = 0.5, 10  # share of the error at its start, and number: a refit that leaves more is not restarted
 LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
 FEW = 3  # parameters: the events are too few to fit more
 
@@ -76,11 +76,14 @@ def errors(model: Model, segments: Segments) -> Array:
     return np.asarray(2.0 * (np.sum(huber_loss(whitened, TAIL), axis=1) + far) / whitened.shape[1])
 
 
-def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = ()) -> Model:
+def polished(
+    alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = (), limits: list[str] | None = None
+) -> Model:
     """The mechanics with their friction, and what was `added` to them, refitted to the training events.
 
     `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise. Static friction a few per
-    cent off puts slips to other moments, and the refit into a valley that it leaves when begun anew where it ended.
+    cent off moves slips to other moments, and the refit into a valley, which it leaves when it is restarted where it
+    ended. `limits` takes a sentence if the last of `REFITS` restarts still helped.
     """
     prior = friction_priors(alone, known)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
@@ -88,7 +91,7 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
             sure = known[name] < SURE * abs(alone[name])
             prior[name] = known[name] if sure else LOOSE * abs(alone[name])
     best, left = alone, _level(errors(alone, found.train(alone)))
-    while True:
+    for _ in range(REFITS):
         new = refit_segments(best, found.train(best), list(prior), prior).model
         before, left = left, _level(errors(new, found.train(new)))
         if not left < before:
@@ -96,6 +99,9 @@ def polished(alone: Model, found: Slips, known: dict[str, float], added: Sequenc
         best = new
         if left < POOR or left > STALLED * before:
             return best
+    if limits is not None:
+        limits.append(f"the friction refitted to breakaways and reversals still changed after {REFITS} refits")
+    return best
 
 
 def _level(errors: Array) -> float:

@@ -145,20 +145,28 @@ class Conductor:
         """One way, until it is long enough, the time is up, or there is no more room; returns why it ended."""
         opened, start = self.time, self.position
         moved: float | None = None  # when it broke away
-        while True:
+        ended: str | None = None
+        while ended is None:  # at the latest when the trial's time is up
             way = trial.direction * (self.position - start)
             volts = trial.voltage.at(self.time - opened)
             self._watch(trial.direction, start, volts)
             if moved is None and way > SLIP:
                 moved = self.time
-            if self._room(trial.direction) <= 0.0:
-                return "limit"
-            if way >= trial.travel:
-                return "travel"
-            if self.time - (opened if moved is None else moved) >= (trial.patience if moved is None else trial.seconds):
-                return "still" if moved is None else "time"
-            self._late.add(self.time, self.position)
-            yield volts
+            ended = self._ended(trial, way, opened, moved)
+            if ended is None:
+                self._late.add(self.time, self.position)
+                yield volts
+        return ended
+
+    def _ended(self, trial: Trial, way: float, opened: float, moved: float | None) -> str | None:
+        """Why a trial one way ends now, a key of `outcome.ENDS`; None while it goes on."""
+        if self._room(trial.direction) <= 0.0:
+            return "limit"
+        if way >= trial.travel:
+            return "travel"
+        if moved is None:
+            return "still" if self.time - opened >= trial.patience else None
+        return "time" if self.time - moved >= trial.seconds else None
 
     def _excite(self, trial: Trial) -> Generator[float, None, str]:
         """Both ways for a given time; beyond a limit the voltage is turned inwards."""

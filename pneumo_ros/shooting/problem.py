@@ -150,12 +150,13 @@ class Problem:
         total += damping * np.diag(np.diag(total))
         low, high = np.maximum((u.low - theta) / u.prior, -1.0), np.minimum((u.high - theta) / u.prior, 1.0)
         move, held = np.zeros(len(theta)), np.zeros(len(theta), dtype=bool)
-        while True:
+        for _ in range(len(theta) + 1):  # each round holds one more at least, the last one has none left to hold
             free = ~held
             right = slope[free] + total[np.ix_(free, held)] @ move[held]
             move[free] = -np.linalg.solve(total[np.ix_(free, free)], right)
             across = free & ((move < low) | (move > high))
             if not across.any():
-                return move
+                break
             move[across] = np.clip(move, low, high)[across]
             held |= across
+        return move

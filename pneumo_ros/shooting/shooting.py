@@ -23,7 +23,7 @@ _POOR = 1.1  # times the same: noise alone leaves half a second at 1 kHz within 
 _ITERATIONS, _ENOUGH = 20, 0.3  # of one descent: steps, and gain in cost (half a squared deviation) worth another
 _ROUGHLY = 1e-3  # share of the cost: gain worth another step before starts have been reseated for the first time
 _ROUNDS, _WORTH = 6, 2.0  # rounds, and gain of a round worth another
-_LEAST, _MOST = 1e-9, 1e3  # damping
+_LEAST, _MOST, _HARDER = 1e-9, 1e3, 30.0  # damping, and by how much it grows after a step that gains nothing
 _SETTLING = 6  # steps of a single start that the linear prediction left worse
 _WORSE = 1.0  # of a segment's loss: more is worth those
 
@@ -94,12 +94,10 @@ class Shooting(Problem):
             enough = max(_ENOUGH + self.slack(costs[-1]), roughly * costs[-1])
             if self.promise(theta, equations) < enough and equations.settling[self.active].sum() < _WORTH + enough:
                 break
-            while True:
-                tried = self._step(states, theta, residuals, equations, damping)
-                cost = self.total(tried[2], tried[1])
-                if cost < costs[-1] or damping > _MOST:
-                    break
-                damping *= 30.0
+            *tried, cost = self._step(states, theta, residuals, equations, damping)
+            while not cost < costs[-1] and damping <= _MOST:
+                damping *= _HARDER
+                *tried, cost = self._step(states, theta, residuals, equations, damping)
             if not cost < costs[-1]:
                 break
             states, theta, residuals = tried
@@ -111,7 +109,8 @@ class Shooting(Problem):
 
     def _step(
         self, states: Array, theta: Array, residuals: Array, equations: Equations, damping: float
-    ) -> tuple[Array, Array, Array]:
+    ) -> tuple[Array, Array, Array, float]:
+        """Starts, parameters and residuals after a damped step, and their cost."""
         move = self.move(theta, equations, damping)
         new_theta = np.clip(theta + move * self.unknowns.prior, self.unknowns.low, self.unknowns.high)
         pull = equations.slope + np.einsum("spn,p->sn", equations.cross, move)
@@ -120,7 +119,8 @@ class Shooting(Problem):
         stayed = self.segments.seated(
             self.with_values(new_theta), states, self.segments.read(self.with_values(theta), states)[0]
         )
-        return self._settle(stayed, new_states, new_theta, self.losses(residuals))
+        found = self._settle(stayed, new_states, new_theta, self.losses(residuals))
+        return *found, self.total(found[2], new_theta)
 
     def _settle(self, stayed: Array, new: Array, theta: Array, before: Array) -> tuple[Array, Array, Array]:
         """Starts, parameters and residuals: the predicted starts, or fitted ones where these are worse than before."""

@@ -6,10 +6,10 @@ from typing import Any, cast
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.diagnose.basefit import Known, fit_base
+from pneumo_ros.diagnose.basefit import ROUNDS, Known, fit_base
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import OVERLAP
-from pneumo_ros.plant import load_model
+from pneumo_ros.plant import Model, load_model
 
 NAMES = tuple(
     f"{effect}.{key}"
@@ -39,8 +39,67 @@ def test_a_size_at_the_end_of_its_range_does_not_hold_what_trades_with_it() -> N
         residuals=lambda model, values: measured - values[:, columns] @ slopes.T,
     )
     known = Known(NAMES, CENTRE, PRIOR, np.array([0.05, 0.15, 0.3]))
-    found = fit_base(cast(Evidence, evidence), model, known)
+    found = fit_base(cast(Evidence, evidence), model, known).model
     rows = np.concatenate([OVERLAP * slopes, np.diag(1.0 / PRIOR)])
     best = lsq_linear(rows, np.concatenate([OVERLAP * measured, CENTRE / PRIOR]), (0.0, np.inf)).x
     assert np.allclose([found[name] for name in NAMES], best, atol=0.05)
     assert abs(found[NAMES[0]] - 160.0) < 1.0
+
+
+COULOMB = "lugre_friction.coulomb_friction"
+COLUMN = list(load_model("axis").parameters).index(COULOMB)
+
+
+class Alternating:
+    """Evidence of two residuals, each better than the other by its own scales: ten outliers, or all a little wrong.
+
+    Wherever one of them is, the other one is a step away, as along a law with kinks finer than any step.
+    """
+
+    names, family = ("momentum 100 ms",), np.zeros(1000, dtype=int)
+
+    def __init__(self) -> None:
+        self.calls = 0
+        self.two = (np.where(np.arange(1000) < 10, 30.0, 0.0), np.full(1000, 2.52))
+        self.which = {70.0: 0}  # of the two, by value of the parameter
+
+    def residuals(self, model: Model, values: np.ndarray) -> np.ndarray:
+        """Residuals (variants, 1000): of a value and a probe of its slope, or of three shares of a step."""
+        self.calls += 1
+        assert self.calls < 500, "the fit goes round for ever"
+        at = values[:, COLUMN].tolist()
+        if len(at) == 3:
+            begin = (at[1] - 0.3 * at[0]) / 0.7
+            here = self.which[min(self.which, key=lambda value: abs(value - begin))]
+            self.which |= dict.fromkeys(at, 1 - here)
+        which = [self.which[value if len(at) == 3 else at[0]] for value in at]
+        return np.stack([self.two[k] + 1e-4 * value for k, value in zip(which, at, strict=True)])
+
+
+def test_a_fit_ends_where_two_models_are_each_better_by_their_own_scales() -> None:
+    axis = load_model("axis")
+    known = Known((COULOMB,), np.array([70.0]), np.array([2.0]), np.array([0.1]))
+    evidence: Any = Alternating()
+    fitted = fit_base(cast(Evidence, evidence), axis, known)
+    assert fitted.settled
+    assert evidence.calls < 10
+
+
+class Falling(Alternating):
+    """Evidence whose residual gets smaller with every call: the fit never settles."""
+
+    def residuals(self, model: Model, values: np.ndarray) -> np.ndarray:
+        """Residuals (variants, 1000)."""
+        self.calls += 1
+        assert self.calls < 500, "the fit goes round for ever"
+        return np.full((len(values), 1000), 1e6 * 0.8**self.calls)
+
+
+def test_a_fit_that_does_not_settle_ends_and_says_so() -> None:
+    axis = load_model("axis")
+    known = Known((COULOMB,), np.array([70.0]), np.array([2.0]), np.array([0.1]))
+    evidence: Any = Falling()
+    fitted = fit_base(cast(Evidence, evidence), axis, known, iterations=3)
+    assert not fitted.settled
+    assert fitted.taken == 3
+    assert evidence.calls == 3 * (ROUNDS + 1)

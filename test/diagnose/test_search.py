@@ -9,7 +9,7 @@ import pytest
 
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.search import UNHELPFUL, VANISHED, Search
+from pneumo_ros.diagnose.search import ROUNDS, UNHELPFUL, VANISHED, Search
 from pneumo_ros.diagnose.steps import Step
 from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.plant import Model, load_model
@@ -41,7 +41,7 @@ class Played(Search):
         self.slipping = slipping
         self.order, self.vanish, self.asked = order, vanish or {}, list[tuple[frozenset[str], str]]()
         self.start = BASE
-        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model))
+        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, limits=[]))
         self.predicted = cast(Any, lambda model: {"position": errors[self.added(model)]})
         self.slips = cast(Any, lambda model: None)
 
@@ -103,3 +103,20 @@ def test_what_only_mends_the_law_of_another_shape_that_was_added_is_no_effect(le
     """A law that explains its equation but spoils predictions: who mends them has to leave less than without both."""
     search = Played([STRIBECK], errors(base=6.0, stribeck=13.0, stribeck_load=left), slipping=LOAD)
     assert names(search) == added
+
+
+def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:
+    class Endless(Played):
+        """Its candidates are new ones in every round, and none of them helps."""
+
+        def round(self, model: Model, refused: Mapping[str, str]) -> Step:
+            found = trial(f"{LOAD}_{len(refused)}")
+            return Step(model, (found,), found, (), {}, {})
+
+        def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
+            return model, [trial.name]
+
+    search = Endless([], errors(base=10.0))
+    found = search.run()
+    assert [step.added for step in found.steps] == [None]
+    assert search.fitter.limits == [f"the search ended after {ROUNDS} rounds with candidates left to try"]

@@ -9,26 +9,33 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.files import write_whole
 from pneumo_ros.plant import Model, save_model
 
+_NUMBERS = 1000  # tried: so many identifications do not end in the same moment
 _EVIDENCE = ("map", "refused", "breakaways", "machine")  # much of it; it is in the file
 
 
 def store(model: Model, result: Mapping[str, Any], folder: Path) -> Path:
     """Write machine file and result under the first free number; returns the machine file's path.
 
-    Raises UsageError when the folder cannot be made or written, DataError when the disk is full.
+    Raises UsageError when the folder cannot be made or written, DataError when the disk is full or no number free.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    number = 1 + max((_number(path) for path in folder.glob(f"{model.name}_*.yaml")), default=0)
-    while True:
-        path = folder / f"{model.name}_{number}.yaml"
-        try:
-            save_model(model, path, overwrite=False)
-            break
-        except DataError:
-            if not path.exists():  # the disk is full
-                raise
-            number += 1  # somebody else took it
+    first = 1 + max((_number(path) for path in folder.glob(f"{model.name}_*.yaml")), default=0)
+    path = next(filter(None, (_saved(model, folder, first + k) for k in range(_NUMBERS))), None)
+    if path is None:
+        raise DataError(f"{folder}: others took {_NUMBERS} numbers in a row from {first} on; give a folder of your own")
     write_whole(path.with_suffix(".json"), json.dumps(result, indent=1) + "\n")
+    return path
+
+
+def _saved(model: Model, folder: Path, number: int) -> Path | None:
+    """The machine file of that number, None where somebody else took the number meanwhile."""
+    path = folder / f"{model.name}_{number}.yaml"
+    try:
+        save_model(model, path, overwrite=False)
+    except DataError:
+        if not path.exists():  # the disk is full
+            raise
+        return None
     return path
 
 
