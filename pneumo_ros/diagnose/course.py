@@ -21,6 +21,7 @@ Index = NDArray[np.int64]
 BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
 SHORT = 1.01e-3  # s: a sample as short is one part where candidates are ranked, which errs by a hundredth of an effect
+LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
 _SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
 
@@ -109,6 +110,7 @@ def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) 
     """Frame states without what sensors do (lanes, n, 2 or 4), and the lanes driven along them.
 
     By a fixed point of two steps at most. Each lane stops by itself: what it gives does not depend on those beside it.
+    A lane that has left the finite numbers stops at once, and comes back as it is.
     """
     states, mean = _as_measured(model, frame, parameters, parts)
     given = np.repeat(frame.states[None], len(states), axis=0)
@@ -116,6 +118,7 @@ def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) 
     for _ in range(2):
         shift = taken_back(model, states[moving], parameters[moving], frame.run)
         still = np.any(np.abs(shift - before).max(axis=1) > _SETTLED[: shift.shape[-1]], axis=1)
+        still &= np.isfinite(shift).all(axis=(1, 2))
         moving, before = moving[still], shift[still]
         if not len(moving):
             break
@@ -125,7 +128,7 @@ def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) 
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
-    step = 1.01 * run.sample_time / parts
+    step = min(1.01 * run.sample_time / parts, LONGEST)
     rest = model.state()[given.shape[-1] :]
     columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
     held = _held(run, parts)
@@ -140,7 +143,7 @@ def _held(run: Run, parts: int) -> Array:
 
 
 def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:
-    step = 1.01 * run.sample_time / QUICK
+    step = min(1.01 * run.sample_time / QUICK, LONGEST)
     rest = model.state()[given.shape[1] :]
     return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
 

@@ -4,7 +4,8 @@ All hypotheses share one model that holds every candidate at its neutral setting
 one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
 """
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,7 +15,7 @@ from scipy.sparse import csr_array
 
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.errors import PneumoError
+from pneumo_ros.errors import NumericalError, PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
@@ -159,21 +160,38 @@ def vectors(model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
 
 
 def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Array, Array, Array]:
-    """Step x (p,) that minimises |w (r + K x)|^2 + |sqrt(ridge) (x + offset)|^2; also w K and the inverse normal."""
+    """Step x (p,) that minimises |w (r + K x)|^2 + |sqrt(ridge) (x + offset)|^2; also w K and the inverse normal.
+
+    Raises NumericalError when the derivatives leave the finite numbers, or differ too much in size.
+    """
     A = K * w[:, None]
-    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
+    bread = _checked(np.linalg.inv, A, ridge)
     return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
 
 
 def solve_within(K: Array, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
     """The step of `solve` that is best within low and high (p,).
 
-    One cut off at the end of its range would leave what trades with it where it does not belong.
+    One cut off at the end of its range would leave what trades with it where it does not belong. Raises NumericalError
+    as `solve`.
     """
     A = K * w[:, None]
-    root = np.linalg.cholesky(A.T @ A + np.diag(ridge)).T
+    root = _checked(np.linalg.cholesky, A, ridge).T
     wanted = -np.linalg.solve(root.T, A.T @ (w * r) + ridge * offset)
     return np.asarray(np.clip(lsq_linear(root, wanted, (low, high), method="bvls").x, low, high))
+
+
+def _checked(function: Callable[..., Array], A: Array, ridge: Array) -> Array:
+    """`function` of the normal matrix A^T A + diag(ridge); NumericalError where matrix or result are not finite."""
+    with np.errstate(invalid="ignore", over="ignore"), contextlib.suppress(np.linalg.LinAlgError):
+        normal = A.T @ A + np.diag(ridge)
+        result = np.asarray(function(normal))
+        if np.isfinite(normal).all() and np.isfinite(result).all():
+            return result
+    raise NumericalError(
+        f"a fit of {len(ridge)} parameters left the finite numbers: a small change of one of them changes the "
+        "simulation without bound; check the values of the machine file, and the equations of your own effects"
+    )
 
 
 def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:

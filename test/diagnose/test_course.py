@@ -37,3 +37,18 @@ def test_a_variant_gives_the_same_alone_and_beside_others() -> None:
         [(alone, alone_mean)] = driven(rows[k : k + 1]).values()
         assert np.array_equal(states, alone)
         assert np.array_equal(mean, alone_mean)
+
+
+def test_effects_with_states_of_their_own_stay_finite_at_100_hz() -> None:
+    """Spool, line and sensor delay swing at 1000 to 1732 rad/s where they are neutral; parts of samples take 5 ms."""
+    model, _, run = own("steps", sample_time=0.01, seconds=3.0)
+    swinging = ("line_delay", "position_sensor_delay", "valve_spool_dynamics")
+    neutral = {
+        "line_delay.delay": 0.0,
+        "position_sensor_delay.delay": 0.0,
+        "valve_spool_dynamics.angular_frequency": 1e3,
+    }
+    slow = model.with_effects([*model.effects, *swinging], neutral)
+    (alone,) = follow_each(model, frame_of(run, False), model.values[None])
+    (beside,) = follow_each(slow, frame_of(run, False), slow.values[None])
+    np.testing.assert_allclose(beside.claimed, alone.claimed, rtol=1e-6, atol=1e-6 * np.abs(alone.claimed).max())
