@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison
     from pneumo_ros.diagnose.between import Moved
+    from pneumo_ros.diagnose.candidate import Candidate
     from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained
-    from pneumo_ros.diagnose.trial import Trial
     from pneumo_ros.plant import Model
     from pneumo_ros.shooting.refit import Estimate
 
@@ -36,7 +36,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "unexplained": None if outcome.unexplained is None else _unexplained(outcome.unexplained),
         "suggested_experiment": experiment,
         "horizon_s": outcome.after.horizon,
-        "course": [{"model": name, "holdout_error": error} for name, error in outcome.course],
+        "course": [{"model": name, "holdout_error": error} for name, error in outcome.waterfall],
         "equations": {"before": equations_dict(outcome.before), "after": equations_dict(outcome.after)},
         "refit": estimates_dict(outcome.model, estimates, outcome.train),
         "train": list(outcome.train),
@@ -96,16 +96,16 @@ def _outdone(name: str, added: list[str], rivals: list[str], model: "Model") -> 
     return [f"{simpler[0]} explains as much with fewer parameters" if simpler else "another one explains more"]
 
 
-def _trial(one: "Ranked", outcome: "Outcome") -> "Trial":
-    """The trial that a row of the ranking tells of."""
-    trials = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
-    trials = trials or [trial for step in outcome.steps for trial in step.trials if trial.name == one.effect]
-    return trials[-1]
+def _trial(one: "Ranked", outcome: "Outcome") -> "Candidate":
+    """The candidate that a row of the ranking tells of."""
+    candidates = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
+    candidates = candidates or [c for step in outcome.steps for c in step.candidates if c.name == one.effect]
+    return candidates[-1]
 
 
-def _fitted(trial: "Trial", model: "Model") -> dict[str, Any]:
+def _fitted(candidate: "Candidate", model: "Model") -> dict[str, Any]:
     """Parameters of a candidate as they were fitted when it was tried."""
-    h, specified = trial.hypothesis, model.library.find(trial.name).parameters
+    h, specified = candidate.hypothesis, model.library.find(candidate.name).parameters
     whole = len(h.covariance) == len(h.coordinates)
     found = {}
     for k, (c, u) in enumerate(zip(h.coordinates, h.u, strict=True)):

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.console import columns
 
 if TYPE_CHECKING:
-    from pneumo_ros.experiment.evidence import Noise
     from pneumo_ros.experiment.separate import Separation
+    from pneumo_ros.experiment.whitened import Noise
 
 
 def separation_text(ranked: "Sequence[Separation]", effects: Sequence[str], noise: "Noise") -> str:

@@ -20,9 +20,9 @@ def comparison_arrays(comparison: "Comparison") -> dict[str, NDArray[Any]]:
 
 
 def _run(run: "RunComparison") -> dict[str, NDArray[Any]]:
-    grid = run.course.run
+    grid = run.motion.run
     found: dict[str, NDArray[Any]] = {
-        "name": np.array(run.name), "time": grid.time, "velocity": run.course.velocity, "input": run.course.input,
+        "name": np.array(run.name), "time": grid.time, "velocity": run.motion.velocity, "input": run.motion.input,
     }  # fmt: skip
     found |= {f"measured/{name}": np.where(grid.measured, s, np.nan) for name, s in grid.signals.items()}
     found |= {f"error/{name}": error for name, error in run.predicted.items()}

@@ -40,7 +40,7 @@ class RunComparison:
     error: dict[str, SignalError]
     free: dict[str, float]
     residuals: dict[str, Residual] = field(repr=False)
-    course: Along = field(repr=False)
+    motion: Along = field(repr=False)
     masks: dict[str, Mask] = field(repr=False)
     located: dict[str, Located] = field(repr=False)
     predicted: dict[str, NDArray[np.float32]] = field(repr=False)
@@ -87,7 +87,7 @@ def compare(
             progress(i / len(runs), run.name)
         results.append(compare_run(model, run, horizon))
     names = results[0].located if results else {}
-    courses = [r.course for r in results]
+    motions = [r.motion for r in results]
     return Comparison(
         model=model.name,
         horizon=horizon,
@@ -95,10 +95,10 @@ def compare(
         equations=judge_equations([r.residuals for r in results]),
         regimes={name: by_regime(pooled([r.located[name].errors for r in results])) for name in names},
         dependences={
-            name: dependences([r.residuals[name] for r in results], courses, window_of(name))
+            name: dependences([r.residuals[name] for r in results], motions, window_of(name))
             for name in (results[0].residuals if results else {})
         },
-        friction=friction_map(model, courses) if results else {},
+        friction=friction_map(model, motions) if results else {},
     )
 
 
@@ -107,8 +107,8 @@ def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
     noise = run.noise
     windows, free = predict(model, run, horizon), free_run(model, run)
     rows = windows.start[:, None] + np.arange(1, windows.states.shape[1] + 1)
-    predicted, course = on_grid(windows, len(run)), along(model, run)
-    masks, residuals = regimes(course), equation_residuals(model, run)
+    predicted, motion = on_grid(windows, len(run)), along(model, run)
+    masks, residuals = regimes(motion), equation_residuals(model, run)
     errors = signal_errors(run, predicted, noise, masks) | equation_errors(residuals, run, masks)
     return RunComparison(
         name=run.name,
@@ -118,7 +118,7 @@ def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
         error={name: judge_signal(e, run.signals[name][rows], noise[name]) for name, e in windows.errors.items()},
         free={name: root_mean_square(error) for name, error in free.errors.items()},
         residuals=residuals,
-        course=course,
+        motion=motion,
         masks=masks,
         located={name: locate(found) for name, found in errors.items()},
         predicted=_single(predicted),

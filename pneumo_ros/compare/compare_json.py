@@ -37,7 +37,7 @@ def _run(run: "RunComparison", total: dict[str, float]) -> dict[str, Any]:
         "name": run.name,
         "samples": run.samples,
         "duration_s": run.duration,
-        "sample_time_s": run.course.run.sample_time,
+        "sample_time_s": run.motion.run.sample_time,
         "windows": run.windows,
         "error": {
             name: {

@@ -44,9 +44,9 @@ class Dependence:
         }  # fmt: skip
 
 
-def dependences(residuals: Sequence[Residual], courses: Sequence[Along], width: float) -> dict[str, Dependence]:
+def dependences(residuals: Sequence[Residual], motions: Sequence[Along], width: float) -> dict[str, Dependence]:
     """One equation's residuals of several runs, each over windows of `width` [s], against every variable they have."""
-    parts = [_variables(residual, course, width) for residual, course in zip(residuals, courses, strict=True)]
+    parts = [_variables(residual, motion, width) for residual, motion in zip(residuals, motions, strict=True)]
     names = [name for name in UNITS if all(name in part for part in parts)]
     value, noise, time = (
         np.concatenate([getattr(r, which) for r in residuals]) for which in ("value", "noise", "time")
@@ -77,11 +77,11 @@ def _hop(residuals: Sequence[Residual]) -> float:
     return float(np.median(steps)) if steps else 0.0
 
 
-def _variables(residual: Residual, course: Along, width: float) -> dict[str, Array]:
+def _variables(residual: Residual, motion: Along, width: float) -> dict[str, Array]:
     """Means of each variable over the residual's windows."""
-    run = course.run
-    signals = {"velocity": course.velocity, "position": run.position}
-    signals["force" if run.force_driven else "voltage"] = course.input
+    run = motion.run
+    signals = {"velocity": motion.velocity, "position": run.position}
+    signals["force" if run.force_driven else "voltage"] = motion.input
     if run.pressure_a is not None and run.pressure_b is not None and not run.force_driven:
         signals |= {"pressure_a": run.pressure_a, "pressure_b": run.pressure_b}
         signals["pressure_difference"] = run.pressure_a - run.pressure_b

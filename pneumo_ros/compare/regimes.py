@@ -33,63 +33,63 @@ MEANING = {
 }
 
 
-def regimes(course: Along) -> dict[str, Mask]:
+def regimes(motion: Along) -> dict[str, Mask]:
     """Masks (n,) by name, in the order of `MEANING`; those of valve and chambers only where the model has them."""
-    rest = _rest(course)
+    rest = _rest(motion)
     masks = {
         "stick": rest,
-        "breakaway": _breakaway(course, rest),
+        "breakaway": _breakaway(motion, rest),
         "slide": ~rest,
-        "reversal": _reversal(course),
-        "near_end_stop": np.abs(course.run.position) > course.reach * (1.0 - 2.0 * NEAR_STOP),
+        "reversal": _reversal(motion),
+        "near_end_stop": np.abs(motion.run.position) > motion.reach * (1.0 - 2.0 * NEAR_STOP),
     }
     for chamber in ("a", "b"):
-        if f"port_flow_{chamber}" in course.seen:
-            flow = course.seen[f"port_flow_{chamber}"]
+        if f"port_flow_{chamber}" in motion.seen:
+            flow = motion.seen[f"port_flow_{chamber}"]
             limit = NO_FLOW * float(np.max(np.abs(flow), initial=0.0))
             masks[f"filling_{chamber}"], masks[f"exhausting_{chamber}"] = flow > limit, flow < -limit
-    if "opening" in course.seen:
-        masks["valve_near_null"] = np.abs(course.seen["opening"]) <= NEAR_NULL
+    if "opening" in motion.seen:
+        masks["valve_near_null"] = np.abs(motion.seen["opening"]) <= NEAR_NULL
     return masks
 
 
-def _rest(course: Along) -> Mask:
+def _rest(motion: Along) -> Mask:
     """Slow for long enough."""
-    slow = np.abs(course.velocity) < course.rest_below
+    slow = np.abs(motion.velocity) < motion.rest_below
     begin, end = stretches(slow)
     result = np.zeros(len(slow), dtype=bool)
     for b, e in zip(begin, end, strict=True):
-        result[b:e] = (e - b) * course.run.sample_time >= SHORTEST_REST
+        result[b:e] = (e - b) * motion.run.sample_time >= SHORTEST_REST
     return result
 
 
-def _breakaway(course: Along, rest: Mask) -> Mask:
-    before, after = (round(span / course.run.sample_time) for span in BREAKAWAY)
+def _breakaway(motion: Along, rest: Mask) -> Mask:
+    before, after = (round(span / motion.run.sample_time) for span in BREAKAWAY)
     _, end = stretches(rest)
     return _around(len(rest), end[end < len(rest)], before, after)
 
 
-def _reversal(course: Along) -> Mask:
+def _reversal(motion: Along) -> Mask:
     """Around pairs of neighbouring sliding samples with opposite directions."""
-    direction = _direction(course)
+    direction = _direction(motion)
     sliding = np.flatnonzero(direction)
     turns = np.flatnonzero(direction[sliding[1:]] != direction[sliding[:-1]])
     begin, end = sliding[turns], sliding[turns + 1]
-    short = (end - begin) * course.run.sample_time <= LONGEST_STOP
-    reach = round(REVERSAL / course.run.sample_time)
+    short = (end - begin) * motion.run.sample_time <= LONGEST_STOP
+    reach = round(REVERSAL / motion.run.sample_time)
     result = np.zeros(len(direction), dtype=bool)
     for b, e in zip(begin[short], end[short], strict=True):
         result[max(b - reach, 0) : e + reach] = True
     return result
 
 
-def _direction(course: Along) -> Array:
+def _direction(motion: Along) -> Array:
     """1, -1 or 0; a way that is kept for less than 20 ms is what a filter makes of a sudden stop."""
-    result = np.zeros(len(course.velocity))
+    result = np.zeros(len(motion.velocity))
     for sign in (1.0, -1.0):
-        begin, end = stretches(sign * course.velocity >= course.rest_below)
+        begin, end = stretches(sign * motion.velocity >= motion.rest_below)
         for b, e in zip(begin, end, strict=True):
-            if (e - b) * course.run.sample_time >= SHORTEST_REST:
+            if (e - b) * motion.run.sample_time >= SHORTEST_REST:
                 result[b:e] = sign
     return result
 

@@ -18,7 +18,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-WINDOW = 0.1  # s
+MAP_WINDOW = 0.1  # s
 _EDGE = 1e-3  # m from the end of the stroke, where the stop's force is not friction
 _BINS = 24  # per direction, over log velocity
 _FEWEST = 8  # windows in a bin: they overlap, so this is two independent ones
@@ -41,9 +41,9 @@ class FrictionPoints:
         return dict(vars(self))
 
 
-def friction_map(model: Model, courses: Sequence[Along]) -> dict[str, FrictionPoints]:
+def friction_map(model: Model, motions: Sequence[Along]) -> dict[str, FrictionPoints]:
     """Both directions of the map from all runs; a direction in which nothing slid long enough is left out."""
-    parts = [_windows(model, course) for course in courses]
+    parts = [_windows(model, motion) for motion in motions]
     run = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
     time, velocity, force, claimed = (np.concatenate([part[i] for part in parts]) for i in range(4))
     result = {}
@@ -62,25 +62,25 @@ def _direction(velocity: Array, force: Array, claimed: Array, cluster: NDArray[n
     bins = bin_means(velocity, force - claimed, cluster, at, _FEWEST)  # what friction changes within a bin cancels
     model = np.array([claimed[inside].mean() for inside in bins.members])
     force, low, high = (model + column for column in (bins.mean, bins.below, bins.above))
-    return FrictionPoints(bins.centre, force, low, high, model, 0.25 * WINDOW * bins.count)
+    return FrictionPoints(bins.centre, force, low, high, model, 0.25 * MAP_WINDOW * bins.count)
 
 
-def _windows(model: Model, course: Along) -> tuple[Array, Array, Array, Array]:
+def _windows(model: Model, motion: Along) -> tuple[Array, Array, Array, Array]:
     """Time, velocity, measured and claimed friction of the windows in which the piston slides one way."""
-    run = course.run
-    bump = Bump.of(WINDOW, run.sample_time)
+    run = motion.run
+    bump = Bump.of(MAP_WINDOW, run.sample_time)
 
     def mean(signal: Array) -> Array:
         return bump.apply(bump.phi, signal)
 
-    force = mean(course.seen["drive"] - course.seen["force"])
+    force = mean(motion.seen["drive"] - motion.seen["force"])
     measured = force - model["piston.mass"] * bump.apply(bump.second, run.position)
-    away = (np.abs(course.velocity) > course.rest_below) & run.measured & (np.abs(run.position) < course.reach - _EDGE)
-    direction = bump.apply(np.ones(bump.width), np.where(away, np.sign(course.velocity), 0.0))
+    away = (np.abs(motion.velocity) > motion.rest_below) & run.measured & (np.abs(run.position) < motion.reach - _EDGE)
+    direction = bump.apply(np.ones(bump.width), np.where(away, np.sign(motion.velocity), 0.0))
     sliding = np.abs(direction) > bump.width - 0.5
     return (
         run.time[bump.centres(len(run))][sliding],
-        mean(course.velocity)[sliding],
+        mean(motion.velocity)[sliding],
         measured[sliding],
-        mean(course.seen["friction"])[sliding],
+        mean(motion.seen["friction"])[sliding],
     )

@@ -23,7 +23,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-ITERATIONS, ROUNDS = 8, 12  # sets of slopes, and rounds with each of them
+ITERATIONS, ROUNDS_EACH = 8, 12  # sets of slopes, and rounds with each of them
 FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
 LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: a smaller gain is not worth another round
 SHARES = (1.0, 0.3, 0.1)  # of a step, tried at once
@@ -81,12 +81,12 @@ def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = I
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
     model is visited twice. Slopes are renewed only where those of an earlier model bring no more: they hardly change,
     and cost most. Rounds end when renewed slopes bring no more, at the latest after `iterations` sets of slopes and
-    `ROUNDS` rounds for each of them.
+    `ROUNDS_EACH` rounds for each of them.
     """
     descent = _Descent(evidence, known, model)
     for taken in range(1, iterations + 1):
         descent.renew()
-        for number in range(ROUNDS):
+        for number in range(ROUNDS_EACH):
             gain, promised = descent.step()
             if number == 0 and descent.little(gain):
                 return Fitted(descent.model, taken, True)

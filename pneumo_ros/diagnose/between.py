@@ -16,7 +16,7 @@ from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
-MOSTLY = 0.5  # of the mean square of what remains: less of it gone is not worth a word
+MOSTLY_GONE = 0.5  # of the mean square of what remains: less of it gone is not worth a word
 REMAINING = 0.5  # of the noise's mean square: less beyond it is noise, too
 NAMED = 0.01  # change of a parameter, of its value, that is named
 
@@ -40,7 +40,7 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
     other = fitter.noted(fit_base(fitter.held, model, own))
     before, after = (_beyond_noise(m, fitter.held.runs, equation) for m in (model, other))
     share = 1.0 - after / max(before, REMAINING)
-    if share < MOSTLY or before < REMAINING:
+    if share < MOSTLY_GONE or before < REMAINING:
         return None
     changed = {n: (model[n], other[n], model.specification(n).unit) for n in own.names}
     return Moved(share, {n: v for n, v in changed.items() if abs(v[1] - v[0]) > NAMED * abs(v[0])})

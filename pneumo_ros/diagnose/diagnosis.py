@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from pneumo_ros.compare.compare import Comparison, EquationVerdict, compare
 from pneumo_ros.diagnose.between import moved_between
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.diagnose.prediction import HORIZON, typical_error
 from pneumo_ros.diagnose.search import Progress, Search
 from pneumo_ros.diagnose.steps import Found, Step
-from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
 MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
 LARGE = 0.05  # of the force that drives the piston, or of the flow: no law's shape is that far off
-REST = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
+SHAPE_LEFT = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
 
 
@@ -50,15 +50,15 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     if models[-1].effects != found.model.effects:
         models.append(found.model)
     models[-1] = found.model
-    course, comparisons = [], {}
+    waterfall, comparisons = [], {}
     for k, model in enumerate(models):
         tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
-        course.append((_label(models, k), typical_error(search.predicted(model))))
+        waterfall.append((_label(models, k), typical_error(search.predicted(model))))
         if k in (1, len(models) - 1):
             comparisons[k] = compare(model, held, HORIZON)
     values = search.fitter.deviations(found.model)
     added = tuple(
-        _addition(step, found.model, values, course[k + 1][1], course[k + 2][1])
+        _addition(step, found.model, values, waterfall[k + 1][1], waterfall[k + 2][1])
         for k, step in enumerate(found.steps)
         if step.added
     )
@@ -72,14 +72,14 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         base=found.base,
         model=found.model,
         added=added,
-        ranking=tuple(_ranked(trial) for trial in _latest(found.steps)),
+        ranking=tuple(_ranked(candidate) for candidate in _latest(found.steps)),
         steps=found.steps,
         before=before,
         after=after,
         errors={
             "before": signal_errors(before), "after": signal_errors(after), "noise": noise_levels(after),
         },
-        course=tuple(course),
+        waterfall=tuple(waterfall),
         unexplained=unexplained,
         interrupted=found.interrupted,
         train=tuple(run.name for run in search.train.runs),
@@ -122,18 +122,18 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
     return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
 
 
-def _latest(steps: Sequence[Step]) -> list[Trial]:
-    """Each candidate's trial in the last round it was tried in; what was added comes first."""
+def _latest(steps: Sequence[Step]) -> list[Candidate]:
+    """Each candidate's candidate in the last round it was tried in; what was added comes first."""
     added = [step.added for step in steps if step.added]
-    seen = {trial.name: trial for step in steps for trial in step.trials}
-    seen |= {trial.name: trial for step in steps for trial in step.rivals}  # of the round in which they tied
-    names = [trial.name for trial in added]
-    return [*added, *sorted((t for n, t in seen.items() if n not in names), key=lambda trial: -trial.hypothesis.t)]
+    seen = {c.name: c for step in steps for c in step.candidates}
+    seen |= {c.name: c for step in steps for c in step.rivals}  # of the round in which they tied
+    names = [c.name for c in added]
+    return [*added, *sorted((c for n, c in seen.items() if n not in names), key=lambda c: -c.hypothesis.t)]
 
 
-def _ranked(trial: Trial) -> Ranked:
-    equation = max(trial.gain, key=lambda name: trial.gain[name])
-    return Ranked(trial.name, trial.hypothesis.t, trial.gain[equation], equation, trial.size, trial.objections, None)
+def _ranked(c: Candidate) -> Ranked:
+    equation = max(c.gain, key=lambda name: c.gain[name])
+    return Ranked(c.name, c.hypothesis.t, c.gain[equation], equation, c.size, c.objections, None)
 
 
 def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
@@ -174,12 +174,12 @@ def material(name: str, before: Comparison, after: Comparison) -> bool:
     first, last, whole = before.equations[name], after.equations[name], driving(after, name)
     if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
         return False
-    return excess(last) > REST * excess(first) or last.residual_rms > LARGE * whole
+    return excess(last) > SHAPE_LEFT * excess(first) or last.residual_rms > LARGE * whole
 
 
 def driving(comparison: Comparison, equation: str) -> float:
     """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
-    seen = [run.course.seen for run in comparison.runs]
+    seen = [run.motion.seen for run in comparison.runs]
     if equation == "momentum":
         parts = [one["drive"] - one["force"] for one in seen]
     else:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs
 
 from pneumo_ros.compare.binned import clusters
-from pneumo_ros.diagnose.course import Followed, follow_each, frame_of
 from pneumo_ros.diagnose.families import Family, families
+from pneumo_ros.diagnose.follow import Followed, follow_each, frame_of
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion
 from pneumo_ros.plant import Model
@@ -37,25 +37,25 @@ class Evidence:
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
-        self._index([Course(model, run, i) for i, run in enumerate(runs)])
+        self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
 
     def only(self, chosen: Sequence[int]) -> tuple["Evidence", NDArray[np.bool_]]:
         """The evidence of some of the runs, by index, and which residuals are theirs."""
         part = object.__new__(Evidence)
-        part._index([self.courses[i] for i in sorted(chosen)])
+        part._index([self.by_run[i] for i in sorted(chosen)])
         return part, np.isin(self.run, chosen)
 
-    def _index(self, courses: list["Course"]) -> None:
-        self.courses = courses
-        self.runs = tuple(course.run for course in courses)
-        families = [f for course in self.courses for f in course.families]
+    def _index(self, by_run: list["RunEvidence"]) -> None:
+        self.by_run = by_run
+        self.runs = tuple(part.run for part in by_run)
+        families = [f for part in self.by_run for f in part.families]
         self.noise = np.concatenate([f.noise[f.usable] for f in families])
         counts = [int(f.usable.sum()) for f in families]
         self.names = tuple(dict.fromkeys(f.name for f in families))
         self.family = np.repeat([self.names.index(f.name) for f in families], counts)
         self.run = np.repeat([f.run for f in families], counts)
         self.time = np.concatenate([f.time[f.usable] for f in families])
-        self.drive = float(np.sqrt(np.mean(np.concatenate([course.drive**2 for course in self.courses]))))
+        self.drive = float(np.sqrt(np.mean(np.concatenate([part.drive**2 for part in self.by_run]))))
         self.block = clusters(self.time, self.run, BLOCK)
 
     def __len__(self) -> int:
@@ -70,14 +70,14 @@ class Evidence:
 
         `ranking`: as exact as ranking candidates asks for, in less time.
         """
-        longest_first = sorted(self.courses, key=lambda course: -len(course.run))  # or the last one is waited for
+        longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # or the last one is waited for
         with ThreadPoolExecutor(threads) as pool:
-            parts = {course: pool.submit(course.values, model, parameters, ranking) for course in longest_first}
-        whole = np.concatenate([parts[course].result() for course in self.courses], axis=1) / self.noise
+            made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
+        whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
 
 
-class Course:
+class RunEvidence:
     """One run's part of the evidence."""
 
     def __init__(self, model: Model, run: Run, index: int) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.course import Frame, follow
+from pneumo_ros.diagnose.follow import Frame, follow
 from pneumo_ros.diagnose.slip_time import force_spread, slip_times
 from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.equations.bump import Bump

@@ -26,8 +26,8 @@ from pneumo_ros.shooting.refit import default_free
 
 Array = NDArray[np.float64]
 
-KNOWN, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
-STEP = 0.005  # of a prior, or of what is usual of an effect
+BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
+PROBE_SHARE = 0.005  # of a prior, or of what is usual of an effect
 AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -61,7 +61,7 @@ class Fitter:
                 continue
             if section in self.start.effects:
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))
-                middle, width, usual = self.start[name], KNOWN * size, USUAL * size
+                middle, width, usual = self.start[name], BASE_PRIOR * size, USUAL * size
             else:
                 c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
                 middle, usual = _usual(c, model[name])
@@ -69,7 +69,7 @@ class Fitter:
             names.append(name)
             centre.append(middle)
             prior.append(width)
-            step.append(STEP * usual)
+            step.append(PROBE_SHARE * usual)
         return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
 
     def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.course import reads_wrong
-from pneumo_ros.diagnose.evidence import Course, Evidence
+from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
+from pneumo_ros.diagnose.follow import reads_wrong
 from pneumo_ros.diagnose.hypothesis import BaseFit
 
 Array = NDArray[np.float64]
 
-FREE = 0.1  # standard deviation of e_k: a law is known to a tenth over the usual range of what it depends on
+LAW_SPREAD = 0.1  # standard deviation of e_k: a law is known to a tenth over the usual range of what it depends on
 
 
 def conditions(evidence: Evidence) -> Array:
@@ -28,11 +28,11 @@ def conditions(evidence: Evidence) -> Array:
 
     (residuals, 3 or 5).
     """
-    columns = 3 + 2 * (not evidence.courses[0].run.force_driven)
+    columns = 3 + 2 * (not evidence.by_run[0].run.force_driven)
     values = np.zeros((len(evidence.time), columns))
-    for course in evidence.courses:
-        own = evidence.run == course.families[0].run
-        values[own] = _seen(course, evidence.time[own])
+    for part in evidence.by_run:
+        own = evidence.run == part.families[0].run
+        values[own] = _seen(part, evidence.time[own])
     return values
 
 
@@ -49,23 +49,23 @@ def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
     added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
     if not added:
         return fit
-    columns = np.concatenate([FREE * _acting(fit, effect)[:, None] * seen for effect in added], axis=1)
+    columns = np.concatenate([LAW_SPREAD * _acting(fit, effect)[:, None] * seen for effect in added], axis=1)
     count = columns.shape[1]
     return replace(
         fit,
         names=(*fit.names, *(f"{effect} {k}" for effect in added for k in range(seen.shape[1]))),
-        prior=np.append(fit.prior, np.full(count, FREE)),
+        prior=np.append(fit.prior, np.full(count, LAW_SPREAD)),
         offset=np.append(fit.offset, np.zeros(count)),
         slopes=np.concatenate([fit.slopes, columns], axis=1),
         bends=count,
     )
 
 
-def _seen(course: Course, time: Array) -> Array:
-    rows = np.clip(np.round(time / course.run.sample_time).astype(int), 0, len(course.frame.states) - 1)
-    states = course.frame.states[rows]
-    pressures = [] if course.run.force_driven else [states[:, 2], states[:, 3]]
-    return np.column_stack([states[:, 0], np.abs(states[:, 1]), *pressures, np.abs(course.held[rows])])
+def _seen(part: RunEvidence, time: Array) -> Array:
+    rows = np.clip(np.round(time / part.run.sample_time).astype(int), 0, len(part.frame.states) - 1)
+    states = part.frame.states[rows]
+    pressures = [] if part.run.force_driven else [states[:, 2], states[:, 3]]
+    return np.column_stack([states[:, 0], np.abs(states[:, 1]), *pressures, np.abs(part.held[rows])])
 
 
 def _acting(fit: BaseFit, effect: str) -> Array:

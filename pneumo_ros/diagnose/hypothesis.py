@@ -23,9 +23,9 @@ from pneumo_ros.shooting.robust import huber_loss, huber_weight
 Array = NDArray[np.float64]
 
 FAR = 50.0  # usual sizes: no residual counts as larger
-TAIL = 5.0  # scales: beyond, an error counts less than squared
+SCALE_TAIL = 5.0  # scales: beyond, an error counts less than squared
 OVERLAP = 0.6  # windows overlap: weight of each, so that together they count about once
-PROBE = 0.05  # u: finite-difference step of a candidate's coordinate
+COORDINATE_PROBE = 0.05  # u: finite-difference step of a candidate's coordinate
 BASE = ("dead_zone", "arctan_flow", "lugre_friction", "rod_atmospheric_force", "end_stop", "quadratic_drag")
 
 
@@ -57,13 +57,13 @@ def family_scales(evidence: Evidence, residual: Array) -> Array:
 
 def huber(u: Array) -> Array:
     """Loss of sizes in scales: squared up to five, linear beyond."""
-    return huber_loss(u, TAIL)
+    return huber_loss(u, SCALE_TAIL)
 
 
 def weights(evidence: Evidence, residual: Array, scale: Array) -> Array:
     """Factors (residuals,) of the residuals in iterated least squares."""
     each = scale[evidence.family]
-    return np.asarray(OVERLAP * np.sqrt(huber_weight(residual / each, TAIL)) / each)
+    return np.asarray(OVERLAP * np.sqrt(huber_weight(residual / each, SCALE_TAIL)) / each)
 
 
 def log_likelihood(evidence: Evidence, residual: Array) -> float:

@@ -12,8 +12,9 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 MOST_BLOCK = 3.0  # log likelihood that one block of time, or event, may say: it takes several to decide
-ACTS, FEWEST = 0.25, 30  # noise deviations that an effect changes a residual by where it acts, and windows that ask for
-FEW = {"breakaway": 8}  # where it is not that: windows overlap, breakaways do not
+ACTS = 0.25  # noise deviations: an effect acts where it changes a residual by more
+FEWEST_WINDOWS = 30  # of a family, without which it is not judged where an effect acts; windows overlap
+FEWEST_OF = {"breakaway": 8}  # the same where it is not that number: breakaways do not overlap
 WILD = 3.0  # usual sizes: beyond, a residual says no more against an effect
 NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
 
@@ -43,7 +44,7 @@ def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) 
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
         own = evidence.family == k if rows is None else rows & (evidence.family == k)
-        if own.sum() >= (1 if rows is None else FEW.get(name, FEWEST)):
+        if own.sum() >= (1 if rows is None else FEWEST_OF.get(name, FEWEST_WINDOWS)):
             scale = max(robust_scale(np.abs(residual[own])), FLOOR.get(name, 1.0))
             found.setdefault(equation_of(name), []).append(scale**2)
     return {name: max(float(np.mean(values)), NOISE.get(name, 1.0)) for name, values in found.items()}
@@ -67,7 +68,7 @@ def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None
 
     In `rows` (residuals,); where hardly a breakaway is in them, as when each changes a little, of all breakaways.
     """
-    whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEW} for r in (before, after)]
+    whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEWEST_OF} for r in (before, after)]
     first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
     noise = {name: NOISE.get(name, 1.0) for name in first}
     shares = ((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)

@@ -21,7 +21,7 @@ from pneumo_ros.shooting.segments import Segments, cut
 Array = NDArray[np.float64]
 
 LENGTH = 0.3  # s
-MOST = 40  # segments: more take longer, and move friction by less than its deviation
+MOST_EVENTS = 40  # segments: more take longer, and move friction by less than its deviation
 _SLOW, _MOVED = 0.004, 3e-4  # m/s and m: an event is slower than the one and goes farther than the other
 _LAG = 0.025  # s
 
@@ -68,7 +68,7 @@ def driven_by_pressures(model: Model, run: Run) -> Run:
     return replace(run, input=held, force_driven=True, pressure_a=None, pressure_b=None)
 
 
-def event_rows(model: Model, runs: Sequence[Run], most: int = MOST) -> NDArray[np.int64]:
+def event_rows(model: Model, runs: Sequence[Run], most: int = MOST_EVENTS) -> NDArray[np.int64]:
     """Which of the side-by-side segments of `runs` hold a breakaway, a stop or a reversal; spread evenly."""
     segments = cut(model, runs, LENGTH)
     y, lag = segments.measured[:, :, 0], max(round(_LAG / segments.sample_time), 1)

@@ -82,9 +82,7 @@ class Outcome:
     before: Comparison = field(repr=False)  # refitted base on the held-out runs
     after: Comparison = field(repr=False)
     errors: dict[str, dict[str, float]]  # before, after, noise -> by signal, rms in its unit over all held-out windows
-    course: tuple[
-        tuple[str, float], ...
-    ]  # waterfall: model as given, refitted, then each addition: error in noise floors
+    waterfall: tuple[tuple[str, float], ...]  # name and error, in noise floors: as given, refitted, each addition
     unexplained: Unexplained | None
     interrupted: bool = False
     train: tuple[str, ...] = ()

@@ -21,7 +21,7 @@ Index = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 SEGMENTS = 80  # of all runs together: more take longer and change little
-BEFORE = 0.15  # s of a segment before its breakaway
+LEAD = 0.15  # s of a segment before its breakaway
 
 
 def polish(
@@ -61,7 +61,7 @@ def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[
 def _before_slips(model: Model, run: Run, samples: int) -> Index:
     """Grid points shortly before each breakaway from which on a segment is measured throughout."""
     slips = find_breakaways(model, run) if "z" in model.states else []
-    early = round(BEFORE / run.sample_time)
+    early = round(LEAD / run.sample_time)
     starts = [slip.index - early for slip in slips if 0 <= slip.index - early < len(run) - samples]
     return np.array([s for s in starts if run.measured[s : s + samples + 1].all()], dtype=np.int64)
 

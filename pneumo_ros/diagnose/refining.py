@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import at_best, relief_of
 from pneumo_ros.diagnose.hypothesis import (
-    PROBE,
+    COORDINATE_PROBE,
     BaseFit,
     Hypothesis,
     family_scales,
@@ -20,7 +20,7 @@ from pneumo_ros.diagnose.significance import covariances, significance
 
 Array = NDArray[np.float64]
 
-FEW = 3  # sizes: of effects with more, only the linear fit is tried
+FEW_SIZES = 3  # sizes: of effects with more, only the linear fit is tried
 
 
 def refine(
@@ -31,35 +31,35 @@ def refine(
     Unless they are `settled`, each begins at the best of a few sizes, and is fitted as exactly as ranking asks for.
     """
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
-    trial = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
+    begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
     moving, known = list(range(len(best))), dict[int, Array]()  # slopes of profiles, which hardly change
     for _k in range(iterations):
         variants: list[dict[str, float]] = []
         spans = {}
         for i in moving:
-            probes = [] if i in known else _probes(best[i], trial[i])
+            probes = [] if i in known else _probes(best[i], begins[i])
             spans[i] = len(variants)
-            variants += [_values(best[i], v) for v in (trial[i], *probes)]
+            variants += [_values(best[i], v) for v in (begins[i], *probes)]
         if not moving:
             break
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
         for i in tuple(moving):
-            h, u, at = best[i], trial[i], spans[i]
+            h, u, at = best[i], begins[i], spans[i]
             C = known[i] if i in known else _slopes(h, u, residual[at : at + 1 + len(u)])
             if _is_profile(h):
                 known[i] = C
             tried = _judge(base, h, u, residual[at], C)
             if tried.likelihood > h.likelihood:
-                best[i], trial[i] = tried, _next(base, tried, C, residual[at])
+                best[i], begins[i] = tried, _next(base, tried, C, residual[at])
             else:
-                trial[i] = 0.5 * (u + h.u)
-            if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(trial[i] - best[i].u)) < 3e-3:
+                begins[i] = 0.5 * (u + h.u)
+            if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(begins[i] - best[i].u)) < 3e-3:
                 moving.remove(i)
     return best
 
 
 def _is_profile(h: Hypothesis) -> bool:
-    return len(h.u) > FEW and all(c.is_size and not c.logarithmic for c in h.coordinates)
+    return len(h.u) > FEW_SIZES and all(c.is_size and not c.logarithmic for c in h.coordinates)
 
 
 def _slopes(h: Hypothesis, u: Array, residual: Array) -> Array:
@@ -76,7 +76,7 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
         linear = np.array([c.is_size and not c.logarithmic for c in h.coordinates])
         fading = size & ~linear
         own = [h.u]
-        if size.sum() <= FEW:
+        if size.sum() <= FEW_SIZES:
             own += [np.where(linear, share * h.u, h.u) for share in (0.4, 0.1)]
             own += [np.where(linear, share * np.where(h.u < 0.0, -1.0, 1.0), h.u) for share in (1.0, 0.3)]
             own += [np.where(fading, h.u + shift, h.u) for shift in (-0.7, 0.7, 1.4) if fading.any()]
@@ -102,9 +102,9 @@ def _probes(h: Hypothesis, u: Array) -> list[Array]:
     found = []
     for j, c in enumerate(h.coordinates):
         v = u.copy()
-        v[j] = c.clip(u[j] + PROBE)
-        if abs(v[j] - u[j]) < 0.5 * PROBE:
-            v[j] = c.clip(u[j] - PROBE)
+        v[j] = c.clip(u[j] + COORDINATE_PROBE)
+        if abs(v[j] - u[j]) < 0.5 * COORDINATE_PROBE:
+            v[j] = c.clip(u[j] - COORDINATE_PROBE)
         found.append(v)
     return found
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.diagnose.candidate import MATERIAL, T_LEAST, Candidate
 from pneumo_ros.diagnose.hypothesis import BaseFit
 from pneumo_ros.diagnose.measures import pooled_advantage
-from pneumo_ros.diagnose.trial import MATERIAL, T_LEAST, Trial
 
 Array = NDArray[np.float64]
 
@@ -16,8 +16,8 @@ TIED = 2.5  # deviations by which a rival must be worse to be told apart
 SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
 
 
-def rivals(base: BaseFit, held: BaseFit, best: Trial, others: Sequence[Trial]) -> list[Trial]:
-    """Trials whose residuals all runs together cannot tell from the best one's."""
+def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates whose residuals all runs together do not distinguish from those of the best one."""
     found = []
     for other in others:
         if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
@@ -37,7 +37,7 @@ def _likeness(one: Array, other: Array) -> float:
     return float(one @ other) / size if size else 0.0
 
 
-def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | None:
+def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candidate | None:
     """The first of `good`, or what it contains when the runs do not ask for more; None of none.
 
     They ask for more when they tell the two apart, and what lies between them is of some size.
@@ -49,17 +49,17 @@ def simplest(base: BaseFit, held: BaseFit, good: Sequence[Trial]) -> Trial | Non
     return good[0] if good else None
 
 
-def _between(held: BaseFit, best: Trial, other: Trial) -> float:
+def _between(held: BaseFit, best: Candidate, other: Candidate) -> float:
     """Size of what two effects change differently, over that of what the best one changes."""
     whole = float(np.linalg.norm(held.residual - best.held))
     return float(np.linalg.norm(other.held - best.held)) / whole if whole else 0.0
 
 
-def _contained(base: BaseFit, trial: Trial) -> tuple[str, ...]:
-    return base.model.library.find(trial.name).contains
+def _contained(base: BaseFit, candidate: Candidate) -> tuple[str, ...]:
+    return base.model.library.find(candidate.name).contains
 
 
-def _tied(base: BaseFit, held: BaseFit, best: Trial, other: Trial) -> bool:
+def _tied(base: BaseFit, held: BaseFit, best: Candidate, other: Candidate) -> bool:
     pairs = [
         (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
         (held.evidence, other.held, best.held),

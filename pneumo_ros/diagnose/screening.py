@@ -29,7 +29,7 @@ SCREENED = 50.0  # s of recordings by which candidates are ranked first
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
 IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
-TINY = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
+SMALL_STEP = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
 
 
 def worst(base: BaseFit) -> BaseFit:
@@ -53,7 +53,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
     if strain(base.offset) > STRAINED:
-        tasks += [(name, effect, TINY * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
+        tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
     for _name, effect, u in tasks:

@@ -8,22 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import unaided
-from pneumo_ros.diagnose.court import TEXTURE, put_on_trial, remaining, size_in, undetermined
+from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
+from pneumo_ros.diagnose.judging import TEXTURE, judged, remaining, size_in, undetermined
 from pneumo_ros.diagnose.measures import excess, force
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import harmless, no_worse, pays, windowed
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
-from pneumo_ros.diagnose.slip_trials import longer
+from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
 from pneumo_ros.diagnose.steps import Found, Step, without
 from pneumo_ros.diagnose.strain import followed
 from pneumo_ros.diagnose.timing import lateness, later
-from pneumo_ros.diagnose.trial import MATERIAL, Trial
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
@@ -31,19 +31,19 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
-SHOWN = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
-MOST, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
+SHOWN_ANYWAY = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
+MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
 VANISHED = "nothing of it is left beside what was added since"
 UNHELPFUL = "predictions of held-out runs over 1 s get no better with it"
 
 
 @dataclass(frozen=True)
-class Ranked:
-    """The candidates beside one model: what they start from, their trials, best first, and the first ranking of all."""
+class Ranking:
+    """The candidates beside one model: what they start from, those judged, best first, and the first ranking of all."""
 
     base: BaseFit
     held: BaseFit
-    trials: list[Trial]
+    candidates: list[Candidate]
     screened: list[Hypothesis]
     quiet: bool  # whether no force of size is unexplained
 
@@ -62,7 +62,7 @@ class Search:
         # what is asked of a model again is kept
         self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
         self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
-        self.ranked = lru_cache(1)(self._ranked)
+        self.ranking = lru_cache(1)(self._rank)
         self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
 
     def run(self) -> Found:
@@ -78,7 +78,7 @@ class Search:
                 k = len(model.effects) - len(base.effects)
                 self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
                 step = self.round(model, refused)
-                if step.added is None or k == MOST:
+                if step.added is None or k == MOST_EFFECTS:
                     steps.append(replace(step, added=None))
                     break
                 self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
@@ -106,10 +106,10 @@ class Search:
             return Found(base, model, tuple(steps), interrupted=True)
         return Found(base, model, tuple(steps))
 
-    def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
+    def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
         """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
-        new = self.fitter.refit(self.fitter.extended(model, trial.hypothesis))
-        new = self.polish(self.fitter.simplest(new, trial.name))
+        new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
+        new = self.polish(self.fitter.simplest(new, candidate.name))
         std = self.fitter.deviations(new)
         gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or undetermined(new, n, std)]
         if gone:
@@ -151,68 +151,68 @@ class Search:
 
         Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
         """
-        made, ranked = self.slips(model), self.ranked(model)
-        if made is None or not ranked.quiet:
+        made, ranking = self.slips(model), self.ranking(model)
+        if made is None or not ranking.quiet:
             return model, None
         first = model.effects == self.start.effects
         against = partial(self.fitter.against, model)
-        return longer(model, made, ranked.screened, self.fitter.deviations(model), against, first, self.fitter.limits)
+        return longer(model, made, ranking.screened, self.fitter.deviations(model), against, first, self.fitter.limits)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
         """The candidates tried beside a model and the best of them, but for those `refused`, and why."""
-        ranked = self.ranked(model)
-        base, held = ranked.base, ranked.held
-        trials = [replace(t, refused=refused.get(t.name, "")) for t in ranked.trials]
-        best = simplest(base, held, [trial for trial in trials if not trial.objections])
-        others = rivals(base, held, best, trials) if best else []
+        ranking = self.ranking(model)
+        base, held = ranking.base, ranking.held
+        candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
+        best = simplest(base, held, [candidate for candidate in candidates if not candidate.objections])
+        others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
-        return Step(model, tuple(trials), best, tuple(others), scales[0], scales[1])
+        return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1])
 
-    def _ranked(self, model: Model) -> Ranked:
+    def _rank(self, model: Model) -> Ranking:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
         base, held = self.fitter.fits(model)
         nothing = unaided(base)
         held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
-        hypotheses, screened = self.candidates(base)
-        trials = self.tried(base, held, nothing, hypotheses, screened)
+        hypotheses, screened = self.hypotheses(base)
+        candidates = self.judged(base, held, nothing, hypotheses, screened)
         now = excess(self.held, held.residual)
         self.first = self.first or now
         quiet = force(self.held, held.residual, np.zeros(len(self.held))) <= TEXTURE * self.held.drive
-        trials = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in trials]
-        return Ranked(base, held, trials, screened, quiet)
+        candidates = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in candidates]
+        return Ranking(base, held, candidates, screened, quiet)
 
-    def candidates(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
+    def hypotheses(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
         part = worst(base)
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
-        short = shortlist(part, bare, promising or screened[:SHOWN], SHORTLIST)
+        short = shortlist(part, bare, promising or screened[:SHOWN_ANYWAY], SHORTLIST)
         fitted = sorted(refine(part, short), key=lambda h: -h.likelihood)
         return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
 
-    def tried(
+    def judged(
         self,
         base: BaseFit,
         held: BaseFit,
         nothing: Hypothesis,
         hypotheses: Sequence[Hypothesis],
         screened: Sequence[Hypothesis],
-    ) -> list[Trial]:
-        """Trials of the hypotheses, and of effects that strained base parameters may stand in for."""
+    ) -> list[Candidate]:
+        """Candidates of the hypotheses, and of effects that strained base parameters may stand in for."""
         first = base.model.effects == self.start.effects
-        trials = put_on_trial(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
-        good = [trial.name for trial in trials if not trial.objections]
+        candidates = judged(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
+        good = [candidate.name for candidate in candidates if not candidate.objections]
         relieving = followed(self.fitter, base, screened, nothing.relief, good)
-        return trials + put_on_trial(base, held, *relieving, nothing, first)
+        return candidates + judged(base, held, *relieving, nothing, first)
 
 
-def convinces(trial: Trial, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+def convinces(candidate: Candidate, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Whether predictions bear an effect out, or need not: its equation is explained, or the data do not say at all.
 
     While something else is missing, predictions over a second may hang on that alone; but where the data do not say,
     predictions may not get worse either.
     """
-    return trial.clear or pays(before, after) or (trial.absorbed and harmless(before, after))
+    return candidate.clear or pays(before, after) or (candidate.absorbed and harmless(before, after))
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

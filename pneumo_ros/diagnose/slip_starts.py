@@ -16,8 +16,8 @@ from pneumo_ros.shooting.start import fit_starts
 Array = NDArray[np.float64]
 Begin = tuple[float, Model]  # the smaller the better, and the model to begin with
 
-EVERY = 3  # of the events one is enough to begin by
-WILD = 0.95  # of the events are looked at along a tangent: where the moment of a slip is missed it leads nowhere
+ONE_IN = 3  # of the events one is enough to begin by
+LOOKED_AT = 0.95  # of the events are looked at along a tangent: where the moment of a slip is missed it leads nowhere
 _SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
 _NEAR = 0.2  # of the usual size: as far as a tangent is trusted
 
@@ -25,7 +25,7 @@ _NEAR = 0.2  # of the usual size: as far as a tangent is trusted
 def by_sizes(alone: Model, found: Slips, name: str) -> Begin:
     """The best of some sizes of an effect beside `alone`, then of some shapes, by the median error of some events."""
     effect = coordinates(alone.library.find(name))
-    some = np.arange(0, len(found.train_rows), EVERY)
+    some = np.arange(0, len(found.train_rows), ONE_IN)
 
     def tried(values: dict[str, float]) -> Begin:
         model = alone.with_effects([*alone.effects, name], values)
@@ -75,7 +75,7 @@ class Tangents:
         begin = problem.unknowns.begin
         residuals = problem.residuals(states, begin)
         losses = problem.losses(residuals)
-        problem.active = losses <= np.quantile(losses, WILD)
+        problem.active = losses <= np.quantile(losses, LOOKED_AT)
         equations = problem.equations(states, begin, residuals)
         step = problem.move(begin, equations, 0.0) * problem.unknowns.prior
         return -problem.promise(begin, equations), problem.with_values(begin + step)

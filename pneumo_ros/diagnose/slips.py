@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events, mechanical
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
-from pneumo_ros.shooting.problem import TAIL
+from pneumo_ros.shooting.problem import NOISE_TAIL
 from pneumo_ros.shooting.refit import refit_segments
 from pneumo_ros.shooting.robust import huber_loss
 from pneumo_ros.shooting.segments import Segments
@@ -23,16 +23,16 @@ from pneumo_ros.shooting.start import fit_starts
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-FREE = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
+FRICTION_KEYS = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
 STATIC, COMMON = "lugre_friction.static_friction", 0.005
-FEWEST = 12  # events
-SURE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
+FEWEST_EVENTS = 12  # events
+SURE_SHARE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
 POOR = (
     1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
 )
 STALLED, REFITS = 0.5, 10  # share of the error at its start, and number: a refit that leaves more is not restarted
-LOOSE = 0.2  # share by which the equations may be wrong about an effect that the events show better
-FEW = 3  # parameters: the events are too few to fit more
+EQUATIONS_OFF = 0.2  # share by which the equations may be wrong about an effect that the events show better
+FEW_PARAMETERS = 3  # parameters: the events are too few to fit more
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Mode
         return None
     first, second = (tuple(driven_by_pressures(model, run) for run in runs) for runs in (train, held))
     found = Slips(first, second, event_rows(alone, first), event_rows(alone, second))
-    return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST else None
+    return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST_EVENTS else None
 
 
 def with_values_of(model: Model, other: Model) -> Model:
@@ -73,7 +73,7 @@ def errors(model: Model, segments: Segments) -> Array:
     x = fit_starts(model, segments)
     whitened = segments.residuals(model, x)[0]
     far = 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
-    return np.asarray(2.0 * (np.sum(huber_loss(whitened, TAIL), axis=1) + far) / whitened.shape[1])
+    return np.asarray(2.0 * (np.sum(huber_loss(whitened, NOISE_TAIL), axis=1) + far) / whitened.shape[1])
 
 
 def polished(
@@ -87,9 +87,9 @@ def polished(
     """
     prior = friction_priors(alone, known)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
-        if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW:
-            sure = known[name] < SURE * abs(alone[name])
-            prior[name] = known[name] if sure else LOOSE * abs(alone[name])
+        if len(alone.library.find(name.partition(".")[0]).parameters) <= FEW_PARAMETERS:
+            sure = known[name] < SURE_SHARE * abs(alone[name])
+            prior[name] = known[name] if sure else EQUATIONS_OFF * abs(alone[name])
     best, left = alone, _level(errors(alone, found.train(alone)))
     for _ in range(REFITS):
         new = refit_segments(best, found.train(best), list(prior), prior).model
@@ -114,5 +114,5 @@ def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
 
     Static friction at least half a per cent: by that much all breakaways may be off together, as slip times may be.
     """
-    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in (f"lugre_friction.{key}" for key in FREE)}
+    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in (f"lugre_friction.{key}" for key in FRICTION_KEYS)}
     return prior | {STATIC: max(prior[STATIC], COMMON * alone[STATIC])}

@@ -3,29 +3,29 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pneumo_ros.diagnose.trial import Trial
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.plant import Model
 
 
 @dataclass(frozen=True)
 class Step:
-    """One round: the model it began with, all trials best first, and what was added.
+    """One round: the model it began with, its candidates, best first, and what was added.
 
     None in the last round, and where nothing is left of it beside what later rounds added.
     """
 
     model: Model
-    trials: tuple[Trial, ...]
-    added: Trial | None
-    rivals: tuple[Trial, ...]
+    candidates: tuple[Candidate, ...]
+    added: Candidate | None
+    rivals: tuple[Candidate, ...]
     before: dict[str, float]  # scale over noise by family on held-out runs
     after: dict[str, float]
 
 
 def without(step: Step, gone: Sequence[str], why: str) -> Step:
-    """The round with the trials of some effects refused afterwards, for that reason."""
-    trials = tuple(replace(t, refused=why) if t.name in gone else t for t in step.trials)
-    return replace(step, trials=trials, added=None if step.added and step.added.name in gone else step.added)
+    """The round with the candidates of some effects refused afterwards, for that reason."""
+    candidates = tuple(replace(t, refused=why) if t.name in gone else t for t in step.candidates)
+    return replace(step, candidates=candidates, added=None if step.added and step.added.name in gone else step.added)
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-TRIED, PART = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
-FEW = 3  # parameters: a profile can stand in for anything
-ITERATIONS = 12
+MOST_FOLLOWED, PART_REGAINED = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
+SIMPLE = 3  # parameters: a profile can stand in for anything
+SETS_OF_SLOPES = 12
 
 
 def followed(
@@ -37,17 +37,17 @@ def followed(
         return [], []
     best: dict[str, Hypothesis] = {}
     for h in sorted(screened, key=lambda h: -h.relief):
-        simple = len(h.coordinates) <= FEW and not any(c.logarithmic for c in h.coordinates)
-        if simple and h.relief > anyway + PART * strained:
+        simple = len(h.coordinates) <= SIMPLE and not any(c.logarithmic for c in h.coordinates)
+        if simple and h.relief > anyway + PART_REGAINED * strained:
             best.setdefault(h.name, h)
-    chosen = [h for h in list(best.values())[:TRIED] if h.name not in known]
-    models = [fitter.refit(fitter.extended(base.model, h), ITERATIONS) for h in chosen]
+    chosen = [h for h in list(best.values())[:MOST_FOLLOWED] if h.name not in known]
+    models = [fitter.refit(fitter.extended(base.model, h), SETS_OF_SLOPES) for h in chosen]
     found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
     return [h for h, _ in found], [held for _, held in found]
 
 
 def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[Hypothesis, Array]:
-    """As a trial wants it, and its held-out residual; laws are as free in shape as beside no candidate."""
+    """The hypothesis that is judged, and its held-out residual; laws are as free in shape as beside no candidate."""
     (fit, held), own = fitter.fits(new, fitter.added(base.model)), coordinates(new.library.find(name))
     shift, after, _value = at_best(fit, fit.residual)
     offset, bends = base.offset.copy(), slice(len(fit.names) - fit.bends, None)

@@ -15,7 +15,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
 
 EFFECT = "position_sensor_delay"
-SURE = 5.0  # deviations from none
+SEEN = 5.0  # deviations from none
 
 
 def lateness(model: Model, train: Sequence[Run]) -> float:
@@ -29,7 +29,7 @@ def lateness(model: Model, train: Sequence[Run]) -> float:
     begin = model.with_effects([*model.effects, EFFECT], {f"{EFFECT}.delay": 0.5 * train[0].sample_time})
     found = fit_base(fitter.train, begin, fitter.known(begin)).model
     late, std = found[f"{EFFECT}.delay"], fitter.deviations(found)[f"{EFFECT}.delay"]
-    return late if SURE * std < late < train[0].sample_time else 0.0
+    return late if SEEN * std < late < train[0].sample_time else 0.0
 
 
 def later(run: Run, seconds: float) -> Run:

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Callable, Generator
 
-from pneumo_ros.experiment.outcome import AbortedError, Outcome
 from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.experiment.trace import Trace
+from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
 
 STILL, WITHIN = 0.3, 3e-4  # s, m: a piston that stays within so much for so long rests
 CALM = 10.0  # s: longest wait for rest at closed valve
@@ -16,7 +16,7 @@ NEAR = 0.05  # of the room: a start this near the limit is near enough
 LAST = 1.0  # s over which the final speed is taken
 BRAKE, PRESENT = 0.02, 0.05  # m/s above which the valve brakes; s over which the present speed is taken
 
-Course = Generator[float, None, None]
+Voltages = Generator[float, None, None]
 
 
 class Conductor:
@@ -29,13 +29,13 @@ class Conductor:
         """`tell` gets a sentence now and then."""
         self.programme, self._tell = programme, tell
         self.recording: str | None = None
-        self.outcomes: list[Outcome] = []
+        self.outcomes: list[TrialResult] = []
         self.done = False
         self.index = 0  # of the trial that comes next, or is under way
         self.time = self.position = 0.0
         self._inside = False
         self._now, self._late = Trace(PRESENT), Trace(LAST)
-        self._course = self._all()
+        self._voltages = self._all()
 
     def step(self, time: float, position: float) -> float:
         """Voltage [V] from now, `time` [s, any origin], on, with the piston at `position` [m].
@@ -45,7 +45,7 @@ class Conductor:
         self.time, self.position = time, position
         self._check()
         self._now.add(time, position)
-        return next(self._course, 0.0)
+        return next(self._voltages, 0.0)
 
     def _check(self) -> None:
         """A plant may be found at the end of its stroke, but must not be driven there."""
@@ -58,12 +58,12 @@ class Conductor:
 
     def _stop(self, reason: str) -> None:
         self.recording = None
-        self._course = _nothing()
+        self._voltages = _nothing()
         raise AbortedError(reason)
 
-    # --- the course of things: each yields voltages -------------------------------------------------------------------
+    # --- what happens, in its order: each yields voltages -------------------------------------------------------------
 
-    def _all(self) -> Course:
+    def _all(self) -> Voltages:
         for index, trial in enumerate(self.programme.trials):
             self.index = index
             yield from self._settle()
@@ -74,7 +74,7 @@ class Conductor:
         yield from self._settle()
         self.done = True
 
-    def _settle(self) -> Course:
+    def _settle(self) -> Voltages:
         """Brake, then closed valve until the piston rests.
 
         The air that drives a piston goes on to do so in closed chambers: without braking it coasts for decimetres.
@@ -105,7 +105,7 @@ class Conductor:
             return None
         return (-1, 0.5 * (low + high) + NEAR * span) if offset > 0.0 else (1, 0.5 * (low + high) - NEAR * span)
 
-    def _go(self, direction: int, target: float) -> Course:
+    def _go(self, direction: int, target: float) -> Voltages:
         """To `target` at a moderate voltage."""
         volts = self._moderate(direction)
         start = best = self.position
@@ -128,7 +128,7 @@ class Conductor:
                 "the sign of valve or position are swapped, or a load is stronger than the pressure"
             )
 
-    def _run(self, trial: Trial) -> Course:
+    def _run(self, trial: Trial) -> Voltages:
         """A rest, then the trial's voltage, both recorded."""
         self.recording = trial.name
         begin = self.time
@@ -139,7 +139,7 @@ class Conductor:
         ended = yield from (self._push(trial) if trial.direction else self._excite(trial))
         self.recording = None
         seconds, way = self.time - opened, abs(self.position - start)
-        self.outcomes.append(Outcome(trial.name, trial.voltage.text, ended, seconds, way, self._late.speed))
+        self.outcomes.append(TrialResult(trial.name, trial.voltage.text, ended, seconds, way, self._late.speed))
 
     def _push(self, trial: Trial) -> Generator[float, None, str]:
         """One way, until it is long enough, the time is up, or there is no more room; returns why it ended."""
@@ -159,7 +159,7 @@ class Conductor:
         return ended
 
     def _ended(self, trial: Trial, way: float, opened: float, moved: float | None) -> str | None:
-        """Why a trial one way ends now, a key of `outcome.ENDS`; None while it goes on."""
+        """Why a trial one way ends now, a key of `trial_result.ENDS`; None while it goes on."""
         if self._room(trial.direction) <= 0.0:
             return "limit"
         if way >= trial.travel:
@@ -186,6 +186,6 @@ class Conductor:
         return self.programme.high - self.position if direction > 0 else self.position - self.programme.low
 
 
-def _nothing() -> Course:
+def _nothing() -> Voltages:
     """No more voltages."""
     yield from ()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.experiment.evidence import Evidence
+from pneumo_ros.experiment.whitened import Whitened
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.refit import PRIOR, default_free
 
@@ -65,7 +65,7 @@ def _usual(model: Model, names: list[str]) -> float:
     return max((_size(model, name) for name in names if model.specification(name).neutral is not None), default=1.0)
 
 
-def imitate(evidence: Sequence[Evidence], truth: Model, model: Model, free: Unknowns) -> list[float]:
+def imitate(evidence: Sequence[Whitened], truth: Model, model: Model, free: Unknowns) -> list[float]:
     """Squared noise deviations that are left, per family of residuals, and last those of the priors.
 
     `truth` has made the record; its own residuals, which are those of sums over samples, are the mark. Gauss-Newton
@@ -101,7 +101,7 @@ def imitate(evidence: Sequence[Evidence], truth: Model, model: Model, free: Unkn
     return [*(float(part @ part) for part in np.split(r, ends)), float(np.sum(((phi - free.start) / free.prior) ** 2))]
 
 
-def _families(evidence: Sequence[Evidence], model: Model) -> list[Array]:
+def _families(evidence: Sequence[Whitened], model: Model) -> list[Array]:
     """Residuals of all records, family by family."""
     return [np.concatenate(parts) for parts in zip(*(one.residuals(model) for one in evidence), strict=True)]
 

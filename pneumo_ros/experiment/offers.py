@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from pneumo_ros.experiment.catalogue import EXPERIMENTS, make_programme
 from pneumo_ros.experiment.programme import Programme
-from pneumo_ros.experiment.telling import BLOCK, VENT
+from pneumo_ros.experiment.telling import BLOCK_PISTON, VENT
 from pneumo_ros.plant import Model
 
 LOW_SUPPLY = 0.75  # of the supply pressure above the atmosphere's
@@ -58,7 +58,7 @@ def menu(model: Model) -> list[Offer]:
 def conditions(programme: Programme, model: Model) -> Part:
     """A programme with the conditions that its preparations make on `model`."""
     vented = {"air.supply_pressure": model["air.atmospheric_pressure"]} if programme.prepare == VENT else {}
-    return Part(programme, vented, blocked=programme.prepare == BLOCK and "z" in model.states)
+    return Part(programme, vented, blocked=programme.prepare == BLOCK_PISTON and "z" in model.states)
 
 
 def _single(name: str, model: Model) -> Offer:

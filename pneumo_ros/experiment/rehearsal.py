@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment.conductor import Conductor
-from pneumo_ros.experiment.outcome import AbortedError, Outcome
 from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.stepper import Stepper
 
@@ -22,7 +22,7 @@ class Rehearsal:
     well.
     """
 
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[TrialResult, ...]
     duration: float
     way: float
     path: tuple[tuple[float, float], ...]

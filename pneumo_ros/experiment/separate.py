@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.experiment.evidence import FAMILIES, Evidence, Noise
 from pneumo_ros.experiment.imitation import imitate, unknowns
 from pneumo_ros.experiment.offers import Offer, menu
 from pneumo_ros.experiment.record import Record, record
+from pneumo_ros.experiment.whitened import FAMILIES, Noise, Whitened
 from pneumo_ros.plant import Model
 
 CLEAR = 5.0  # noise deviations that tell effects apart, whatever was looked for; fewer than 2 tell nothing
@@ -99,7 +99,7 @@ def _judge(offer: Offer, models: tuple[Model, Model], effects: tuple[str, str], 
         if refused:
             return Separation(offer, 0.0, 0.0, "", 0.0, refused[0])
         other, name = models[1 - k], effects[1 - k]
-        evidence = [Evidence(one, other, noise) for one in records if isinstance(one, Record)]
+        evidence = [Whitened(one, other, noise) for one in records if isinstance(one, Record)]
         found.append(imitate(evidence, truth, other, unknowns(other, name)))
         duration = max(duration, sum(one.duration for one in records if isinstance(one, Record)))
     totals = [float(np.sqrt(sum(left))) for left in found]

@@ -5,17 +5,17 @@ from pathlib import Path
 from typing import Any
 
 from pneumo_ros.experiment.conductor import Conductor
-from pneumo_ros.experiment.outcome import Outcome
 from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.experiment.trial_result import TrialResult
 
 
-def trial_dict(outcome: Outcome) -> dict[str, Any]:
+def trial_dict(outcome: TrialResult) -> dict[str, Any]:
     """One trial with units in the names."""
     keys = {"seconds": "valve_open_s", "travel": "travel_m", "speed": "speed_m_s"}
     return {keys.get(key, key): value for key, value in asdict(outcome).items()}
 
 
-def recorded(outcome: Outcome, folder: Path) -> dict[str, Any]:
+def recorded(outcome: TrialResult, folder: Path) -> dict[str, Any]:
     """One trial, and where its recording is."""
     return trial_dict(outcome) | {"path": str(folder / outcome.name)}
 

@@ -9,7 +9,7 @@ from pneumo_ros.experiment.voltages import Constant, Steps, Sweep
 from pneumo_ros.plant import Model
 
 VENT = "shut the supply off and let its pressure out, so that both chambers can empty"
-BLOCK = "block the piston near mid stroke, so that it cannot move"
+BLOCK_PISTON = "block the piston near mid stroke, so that it cannot move"
 MARGIN = 0.2  # of the stroke kept free before either end
 PAUSES = (0.1, 1.0, 10.0, 60.0)  # s
 _MOVE, _BRAKE = 1.2, 0.25  # s of motion between pauses, and of braking before them
@@ -78,7 +78,7 @@ def triangle(model: Model, seconds: float = 32.0) -> Programme:
 def blocked_triangle(model: Model, seconds: float = 32.0) -> Programme:
     """The voltage rises and falls slowly while the piston is blocked: the valve alone."""
     trial = Trial("blocked_triangle", Steps(_triangle(model, 0.3, 8.0, seconds)), seconds, anywhere=True)
-    return Programme("blocked-triangle", model.name, trials=(trial,), prepare=BLOCK, **room_of(model))
+    return Programme("blocked-triangle", model.name, trials=(trial,), prepare=BLOCK_PISTON, **room_of(model))
 
 
 def _triangle(model: Model, beyond: float, period: float, seconds: float) -> tuple[tuple[float, float], ...]:

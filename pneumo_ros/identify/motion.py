@@ -18,9 +18,9 @@ from pneumo_ros.shooting.segments import cut_at
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-BEFORE, AFTER = 0.7, 0.3  # s around a breakaway
+BEFORE_BREAKAWAY, AFTER_BREAKAWAY = 0.7, 0.3  # s around a breakaway
 RAMP = 15.0  # N/s: under a slower ramp the moment of breakaway hangs on hundredths of a newton
-FEW, MOST = 4, 20  # breakaways: fewer say too little, more say nothing new
+FEWEST_BREAKAWAYS, MOST_BREAKAWAYS = 4, 20  # breakaways: fewer say too little, more say nothing new
 _SURE, _KNOWN = 0.01, 0.05  # relative deviations of valve parameters, identified or as given
 
 
@@ -50,11 +50,11 @@ def fit_motion(
     chosen = _one_rate(runs, breakaways)
     starts = _thinned([_starts(run, breakaways) for run in chosen])
     count = sum(len(s) for s in starts)
-    if not free or count < FEW:
+    if not free or count < FEWEST_BREAKAWAYS:
         return None
     beside = [name for name in (*COEFFICIENTS, *LIMITS, STIFFNESS) if name in model.parameters and name not in free]
     wide = {name: (_SURE if name in sure else _KNOWN) * abs(model[name]) for name in beside} | dict(free)
-    segments = cut_at(model, chosen, starts, round((BEFORE + AFTER) / chosen[0].sample_time))
+    segments = cut_at(model, chosen, starts, round((BEFORE_BREAKAWAY + AFTER_BREAKAWAY) / chosen[0].sample_time))
     fit = refit_segments(model, segments, [*free, *beside], wide, progress=progress)
     good = {name: fit.estimates[name] for name in free if _good(fit.estimates[name])}
     return MotionFit(good, fit.correlation, (*free, *beside), count)
@@ -65,7 +65,7 @@ def _good(estimate: Estimate) -> bool:
 
 
 def _starts(run: Run, breakaways: Sequence[Breakaway]) -> Index:
-    before, after = round(BEFORE / run.sample_time), round(AFTER / run.sample_time)
+    before, after = round(BEFORE_BREAKAWAY / run.sample_time), round(AFTER_BREAKAWAY / run.sample_time)
     rows = [
         max(b.index - before, 0)
         for b in breakaways
@@ -86,8 +86,8 @@ def _one_rate(runs: Sequence[Run], breakaways: Sequence[Breakaway]) -> list[Run]
 
 
 def _thinned(starts: Sequence[Index]) -> list[Index]:
-    """At most `MOST` of all, spread evenly."""
+    """At most `MOST_BREAKAWAYS` of all, spread evenly."""
     total = sum(len(s) for s in starts)
-    kept = np.unique(np.linspace(0, total - 1, min(total, MOST)).round().astype(int))
+    kept = np.unique(np.linspace(0, total - 1, min(total, MOST_BREAKAWAYS)).round().astype(int))
     bounds = np.cumsum([0, *(len(s) for s in starts)])
     return [s[kept[(kept >= a) & (kept < a + len(s))] - a] for s, a in zip(starts, bounds[:-1], strict=True)]

@@ -96,7 +96,7 @@ def notes(outcome: "Outcome") -> list[str]:
         found.append("No effect was added: none of the catalogue passed every test (see the evidence).")
     elif outcome.verdict != UNKNOWN and outcome.unexplained is None:
         found.append("What remains in every equation is noise, or too little to be worth an effect.")
-    last = outcome.course[-1][1]
+    last = outcome.waterfall[-1][1]
     if last > ENOUGH:
         found.append(
             f"Held-out recordings predicted over {outcome.after.horizon:g} s are still {times(last)} the noise floor "

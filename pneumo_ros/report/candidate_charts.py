@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.trial import GAIN_LEAST, T_LEAST
+from pneumo_ros.diagnose.candidate import GAIN_LEAST, T_LEAST
 from pneumo_ros.report.bars import bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
 from pneumo_ros.report.naming import effect_words, sentence

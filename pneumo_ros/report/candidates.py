@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneumo_ros.compare.wording import number, percent
-from pneumo_ros.diagnose.court import sizes
-from pneumo_ros.diagnose.trial import GAIN_LEAST, T_LEAST
+from pneumo_ros.diagnose.candidate import GAIN_LEAST, T_LEAST
+from pneumo_ros.diagnose.judging import sizes
 from pneumo_ros.report.candidate_charts import candidate_charts
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.naming import NORMAL, effect_words, equation_words, listed, resolved
 
 if TYPE_CHECKING:
+    from pneumo_ros.diagnose.candidate import Candidate
     from pneumo_ros.diagnose.outcome import Outcome, Ranked
-    from pneumo_ros.diagnose.trial import Trial
 
 ADDED, RIVAL, REFUSED = "added", "rival", "refused"
 
@@ -61,9 +61,9 @@ def _table(outcome: "Outcome", states: list[str]) -> Html:
 
 
 def size_interval(outcome: "Outcome", one: "Ranked") -> str:
-    """95 % interval of a candidate's size in usual ones; a dash where the trial has none."""
-    trials = [trial for step in outcome.steps for trial in step.trials if trial.name == one.effect]
-    own = [trial for trial in trials if trial.hypothesis.t == one.score]
+    """95 % interval of a candidate's size in usual ones; a dash where the candidate has none."""
+    candidates = [candidate for step in outcome.steps for candidate in step.candidates if candidate.name == one.effect]
+    own = [candidate for candidate in candidates if candidate.hypothesis.t == one.score]
     found = _bounds(own[-1]) if own and one.size else None
     if not found:
         return "-"
@@ -71,9 +71,9 @@ def size_interval(outcome: "Outcome", one: "Ranked") -> str:
     return f"{resolved(found[0], std)} to {resolved(found[1], std)}"
 
 
-def _bounds(trial: "Trial") -> tuple[float, float] | None:
+def _bounds(candidate: "Candidate") -> tuple[float, float] | None:
     """Bounds of the largest size in usual ones, as `magnitude` counts it."""
-    h = trial.hypothesis
+    h = candidate.hypothesis
     if len(h.covariance) != len(h.coordinates):
         return None
     here = sizes(h.coordinates, h.u)

@@ -30,7 +30,7 @@ def run_charts(run: "RunComparison", link: str, bucket: int) -> tuple[Chart, ...
 
 def _signal_chart(run: "RunComparison", name: str, link: str, bucket: int) -> Chart:
     words, unit, factor = SIGNALS[name]
-    grid, found = run.course.run, run.error[name]
+    grid, found = run.motion.run, run.error[name]
     kept = extremes(run.predicted[name].astype(float), bucket)
     time, measured = grid.time[kept], factor * np.where(grid.measured, grid.signals[name], np.nan)[kept]
     error, free = (factor * series[name][kept].astype(float) for series in (run.predicted, run.free_errors))
@@ -98,7 +98,7 @@ def _broken(time: Array, value: Array, noise: Array) -> tuple[Array, Array, Arra
 
 
 def _regime_chart(run: "RunComparison", link: str) -> Chart:
-    grid = run.course.run
+    grid = run.motion.run
     words, unit = ("driving force", "N") if grid.force_driven else ("valve voltage", "V")
     names = [name for name in REGIMES if name in run.masks and run.masks[name].any()]
     spans = []
@@ -108,7 +108,7 @@ def _regime_chart(run: "RunComparison", link: str) -> Chart:
         y = np.tile([row, row, np.nan], len(begin)).astype(float)
         spans.append(Trace(REGIMES[name], _ROLES.get(name[:4], "first"), "spans", x.ravel(), y))
     ticks = tuple(REGIMES[name] for name in names)
-    drive = Trace(words, "measured", "steps", grid.time, run.course.input, resolution=1e-4 * _span(run.course.input))
+    drive = Trace(words, "measured", "steps", grid.time, run.motion.input, resolution=1e-4 * _span(run.motion.input))
     shares = ", ".join(f"{REGIMES[n]} {percent(float(run.masks[n].mean()))}" for n in names)
     panels = (Panel(f"{words} [{unit}]", (drive,)), Panel("", tuple(spans), ticks=ticks, share=0.3 + 0.2 * len(ticks)))
     return Chart(

@@ -29,12 +29,12 @@ def waterfall_section(outcome: "Outcome") -> Section:
     ).rstrip()
     signals = Section("held-out-signals", "Signal by signal", _signals(outcome))
     body = tag("p", text, class_="soft")
-    return Section("held-out", "Held-out error", body, charts=(waterfall_chart(outcome.course),), parts=(signals,))
+    return Section("held-out", "Held-out error", body, charts=(waterfall_chart(outcome.waterfall),), parts=(signals,))
 
 
-def waterfall_chart(course: Sequence[tuple[str, float]]) -> Chart:
-    """A bar for each model of a course (name, error in noise floors): as given, refitted, then what was added."""
-    names, errors = [effect_words(name) for name, _ in course], np.array([error for _, error in course])
+def waterfall_chart(waterfall: Sequence[tuple[str, float]]) -> Chart:
+    """A bar for each model of a waterfall (name, error in noise floors): as given, refitted, then what was added."""
+    names, errors = [effect_words(name) for name, _ in waterfall], np.array([error for _, error in waterfall])
     lowest, highest = min(float(errors.min()), 1.0), max(float(errors.max()), 1.0)
     log = highest / lowest > _DECADES
     begin = 0.7 * lowest if log else 0.0

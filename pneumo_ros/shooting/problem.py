@@ -11,7 +11,7 @@ from pneumo_ros.shooting.segments import PROBE, Segments
 
 Array = NDArray[np.float64]
 
-TAIL = 4.0  # noise deviations: beyond, errors count less than squared
+NOISE_TAIL = 4.0  # noise deviations: beyond, errors count less than squared
 _BENT = 5e-3  # share of what noise does not explain: gain worth a step of a model that lacks something
 _LANES = 1024  # at once: more take memory, not time
 
@@ -54,7 +54,7 @@ class Problem:
         self.columns = [list(model.parameters).index(name) for name in unknowns.names]
         self.active = np.ones(len(segments), dtype=bool)
         count, n = segments.measured[0].size, segments.guess.shape[1]
-        self.tail = np.append(np.full(count, TAIL), np.full(n, np.inf))  # distances from guesses count squared
+        self.tail = np.append(np.full(count, NOISE_TAIL), np.full(n, np.inf))  # distances from guesses count squared
 
     def begin_cost(self, states: Array) -> float:
         """Cost at the parameters begun with."""

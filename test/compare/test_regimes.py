@@ -84,10 +84,10 @@ def test_the_valve_decides_what_fills_and_what_empties(voltage: float, named: se
 
 
 def test_the_dead_zone_of_the_model_decides_what_is_near_null() -> None:
-    course = moved(phase((0.05, 0.5)), voltage=0.85)
+    motion = moved(phase((0.05, 0.5)), voltage=0.85)
     narrow = load_model().with_parameters({"dead_zone.right_limit": 0.5})
-    assert regimes(course)["valve_near_null"].all()
-    assert not regimes(along(narrow, course.run))["valve_near_null"].any()
+    assert regimes(motion)["valve_near_null"].all()
+    assert not regimes(along(narrow, motion.run))["valve_near_null"].any()
 
 
 def test_an_axis_without_chambers_has_no_regimes_of_valve_or_chambers() -> None:

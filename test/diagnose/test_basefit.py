@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.diagnose.basefit import ROUNDS, Known, fit_base
+from pneumo_ros.diagnose.basefit import ROUNDS_EACH, Known, fit_base
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import OVERLAP
 from pneumo_ros.plant import Model, load_model
@@ -102,4 +102,4 @@ def test_a_fit_that_does_not_settle_ends_and_says_so() -> None:
     fitted = fit_base(cast(Evidence, evidence), axis, known, iterations=3)
     assert not fitted.settled
     assert fitted.taken == 3
-    assert evidence.calls == 3 * (ROUNDS + 1)
+    assert evidence.calls == 3 * (ROUNDS_EACH + 1)

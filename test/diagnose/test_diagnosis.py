@@ -19,7 +19,7 @@ def left(equation: str, rms: float, ratio: float) -> Comparison:
     seen = {"drive": np.array([FORCE, -FORCE]) + 7.0, "force": np.array([7.0, 7.0]), **flows}
     unit = "N" if equation == "momentum" else "kg/s"
     found = {equation: EquationVerdict(rms, unit, ratio, False)}
-    runs = [SimpleNamespace(course=SimpleNamespace(seen=seen))]
+    runs = [SimpleNamespace(motion=SimpleNamespace(seen=seen))]
     return cast(Comparison, SimpleNamespace(equations=found, runs=runs))
 
 

@@ -20,7 +20,7 @@ RNG = np.random.default_rng(0)
 SEEN = np.column_stack([RNG.uniform(-1.0, 1.0, N), RNG.uniform(0.05, 0.5, N), RNG.normal(size=N), np.zeros(N)])
 POSITION, SPEED = SEEN[:, 0], SEEN[:, 1]
 NOISE = 0.5  # N
-COURSE = SimpleNamespace(
+PART = SimpleNamespace(
     run=SimpleNamespace(force_driven=True, sample_time=1.0),
     frame=SimpleNamespace(states=SEEN[:, [0, 1]]),
     held=SEEN[:, 2],
@@ -30,7 +30,7 @@ EVIDENCE = cast(
     Evidence,
     SimpleNamespace(
         names=("momentum 100 ms",), family=np.zeros(N, dtype=np.int64), run=np.zeros(N, dtype=np.int64),
-        time=np.arange(N, dtype=float), noise=np.full(N, NOISE), courses=[COURSE], block=np.arange(N) // 20,
+        time=np.arange(N, dtype=float), noise=np.full(N, NOISE), by_run=[PART], block=np.arange(N) // 20,
     ),
 )  # fmt: skip
 RELATIVE = relative(conditions(EVIDENCE), conditions(EVIDENCE))

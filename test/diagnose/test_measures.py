@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.measures import FEWEST, acting, explained, gains, usual_gains
+from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, acting, explained, gains, usual_gains
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
 NOISE = np.random.default_rng(0).normal(size=N)
@@ -36,7 +36,7 @@ def test_what_acts_but_explains_nothing_gains_nothing() -> None:
 
 
 def test_a_few_windows_say_nothing() -> None:
-    before = NOISE + effect(FEWEST - 1)
+    before = NOISE + effect(FEWEST_WINDOWS - 1)
     assert gains(EVIDENCE, before, NOISE, acting(before, NOISE)) == {}
     assert explained(EVIDENCE, before, NOISE, acting(before, NOISE)) == 0.0
 

@@ -6,10 +6,10 @@ from typing import Any, cast
 
 import numpy as np
 
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.rivals import rivals, simplest
-from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.plant import load_model
 
 RNG = np.random.default_rng(0)
@@ -19,7 +19,7 @@ TRACE = 3.0 * np.sin(0.1 * np.arange(N))
 
 
 def evidence() -> Evidence:
-    """As much of the evidence as the comparison of trials reads: one family, blocks of ten."""
+    """As much of the evidence as the comparison of candidates reads: one family, blocks of ten."""
     names, family, block = ("momentum 100 ms",), np.zeros(N, dtype=np.int64), np.arange(N) // 10
     return cast(Evidence, SimpleNamespace(names=names, family=family, block=block))
 
@@ -30,37 +30,43 @@ def fit() -> BaseFit:
     return BaseFit(model, model, (), np.empty(0), np.empty(0), evidence(), NOISE + TRACE, np.empty((N, 0)))
 
 
-def trial(name: str, left: np.ndarray, score: float = 100.0) -> Trial:
+def candidate(name: str, left: np.ndarray, score: float = 100.0) -> Candidate:
     """A candidate that leaves `left` in training and held-out runs alike."""
     h = Hypothesis(name, (), np.empty(0), np.empty(0), left, t=50.0)
     given: dict[str, Any] = {"gain": {"momentum": 0.9}, "z": 9.0, "size": 1.0, "stable": True, "share": 1.0}
-    return Trial(hypothesis=h, held=left, first=True, decoy=0.0, score=score, **given)
+    return Candidate(hypothesis=h, held=left, first=True, decoy=0.0, score=score, **given)
 
 
 def test_what_leaves_the_same_is_a_rival() -> None:
-    best, other = trial("constant_load", NOISE), trial("spring_load", NOISE + 0.01 * TRACE, 99.0)
+    best, other = candidate("constant_load", NOISE), candidate("spring_load", NOISE + 0.01 * TRACE, 99.0)
     assert [r.name for r in rivals(fit(), fit(), best, [best, other])] == ["spring_load"]
 
 
 def test_what_leaves_more_is_none() -> None:
-    best, other = trial("constant_load", NOISE), trial("spring_load", NOISE + 0.7 * TRACE, 99.0)
+    best, other = candidate("constant_load", NOISE), candidate("spring_load", NOISE + 0.7 * TRACE, 99.0)
     assert rivals(fit(), fit(), best, [best, other]) == []
 
 
 def test_what_changes_something_else_is_none() -> None:
-    best, other = trial("constant_load", NOISE), trial("spring_load", NOISE + TRACE - 3.0 * RNG.normal(size=N), 99.0)
+    best, other = (
+        candidate("constant_load", NOISE),
+        candidate("spring_load", NOISE + TRACE - 3.0 * RNG.normal(size=N), 99.0),
+    )
     assert rivals(fit(), fit(), best, [best, other]) == []
 
 
 def test_of_two_that_explain_the_same_the_contained_one_is_taken() -> None:
-    general, simple = trial("asymmetric_viscous_friction", NOISE), trial("viscous_friction", NOISE, 99.0)
+    general, simple = candidate("asymmetric_viscous_friction", NOISE), candidate("viscous_friction", NOISE, 99.0)
     chosen = simplest(fit(), fit(), [general, simple])
     assert chosen is simple
     assert rivals(fit(), fit(), simple, [general, simple]) == []
 
 
 def test_the_general_one_is_taken_where_recordings_ask_for_it() -> None:
-    general, simple = trial("asymmetric_viscous_friction", NOISE), trial("viscous_friction", NOISE + 0.7 * TRACE, 60.0)
+    general, simple = (
+        candidate("asymmetric_viscous_friction", NOISE),
+        candidate("viscous_friction", NOISE + 0.7 * TRACE, 60.0),
+    )
     assert simplest(fit(), fit(), [general, simple]) is general
 
 
@@ -68,6 +74,6 @@ def test_a_small_part_that_recordings_only_just_show_is_no_reason_for_the_genera
     """However surely many recordings tell: a twentieth is how a machine's law differs from the catalogue's."""
     sure = 20.0 * fit().residual  # so much noise below the trace
     base = replace(fit(), residual=sure)
-    general = trial("asymmetric_viscous_friction", NOISE)
-    simple = trial("viscous_friction", NOISE + 0.8 * TRACE, 99.0)
+    general = candidate("asymmetric_viscous_friction", NOISE)
+    simple = candidate("viscous_friction", NOISE + 0.8 * TRACE, 99.0)
     assert simplest(base, base, [general, simple]) is simple

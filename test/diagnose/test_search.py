@@ -7,11 +7,11 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.search import ROUNDS, UNHELPFUL, VANISHED, Search
 from pneumo_ros.diagnose.steps import Step
-from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.plant import Model, load_model
 
 BASE = load_model("axis")
@@ -19,12 +19,12 @@ LOAD, DROOP, OFFSET, STRIBECK = "constant_load", "supply_pressure_droop", "press
 CLEAR = {STRIBECK}  # its equation is explained: predictions need not bear it out
 
 
-def trial(name: str) -> Trial:
+def candidate(name: str) -> Candidate:
     """A candidate that passes every test but is not clear: predictions have to bear it out."""
     h = Hypothesis(name, (), np.empty(0), np.empty(0), np.empty(0), t=50.0)
     share = 0.9 if name in CLEAR else 0.6
     given: dict[str, Any] = {"gain": {"momentum": 0.5}, "z": 9.0, "size": 1.0, "stable": True, "share": share}
-    return Trial(hypothesis=h, held=np.empty(0), first=False, decoy=0.0, score=100.0, **given)
+    return Candidate(hypothesis=h, held=np.empty(0), first=False, decoy=0.0, score=100.0, **given)
 
 
 class Played(Search):
@@ -50,18 +50,18 @@ class Played(Search):
         return frozenset(model.effects) - frozenset(BASE.effects)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
-        found = [trial(n) for n in self.order if n not in refused and n not in model.effects]
+        found = [candidate(n) for n in self.order if n not in refused and n not in model.effects]
         return Step(model, tuple(found), found[0] if found else None, (), {}, {})
 
-    def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
-        self.asked.append((self.added(model), trial.name))
-        gone = [old for old, new in self.vanish.items() if new == trial.name and old in model.effects]
-        return model.with_effects([*(n for n in model.effects if n not in gone), trial.name]), gone
+    def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
+        self.asked.append((self.added(model), candidate.name))
+        gone = [old for old, new in self.vanish.items() if new == candidate.name and old in model.effects]
+        return model.with_effects([*(n for n in model.effects if n not in gone), candidate.name]), gone
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         if not self.slipping:
             return model, None
-        step = Step(model, (), trial(self.slipping), (), {}, {})
+        step = Step(model, (), candidate(self.slipping), (), {}, {})
         return model.with_effects([*model.effects, self.slipping]), step
 
     def settled(self, model: Model) -> Model:
@@ -94,8 +94,8 @@ def test_what_vanished_beside_another_does_not_come_back() -> None:
     )  # fmt: skip
     found = search.run()
     assert [step.added.name for step in found.steps if step.added] == [LOAD]
-    assert [t.refused for t in found.steps[0].trials if t.name == OFFSET] == [VANISHED]
-    assert UNHELPFUL not in {t.refused for step in found.steps for t in step.trials}
+    assert [t.refused for t in found.steps[0].candidates if t.name == OFFSET] == [VANISHED]
+    assert UNHELPFUL not in {t.refused for step in found.steps for t in step.candidates}
 
 
 @pytest.mark.parametrize(("left", "added"), [(9.0, [STRIBECK]), (1.0, [STRIBECK, LOAD])])
@@ -110,11 +110,11 @@ def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:
         """Its candidates are new ones in every round, and none of them helps."""
 
         def round(self, model: Model, refused: Mapping[str, str]) -> Step:
-            found = trial(f"{LOAD}_{len(refused)}")
+            found = candidate(f"{LOAD}_{len(refused)}")
             return Step(model, (found,), found, (), {}, {})
 
-        def extended(self, model: Model, trial: Trial) -> tuple[Model, list[str]]:
-            return model, [trial.name]
+        def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
+            return model, [candidate.name]
 
     search = Endless([], errors(base=10.0))
     found = search.run()

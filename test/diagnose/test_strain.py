@@ -41,7 +41,7 @@ class Played:
     train = held = evidence()
 
     def fits(self, model: Model, bent: list[str]) -> tuple[BaseFit, BaseFit]:
-        assert bent == ["payload_mass"]  # not the law of what is on trial
+        assert bent == ["payload_mass"]  # not the law of what is judged
         found = fit(model, (LIMIT, OFFSET), 0.0, [OPENING, OPENING])
         return found, found
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from pneumo_ros.experiment.conductor import Conductor
-from pneumo_ros.experiment.outcome import AbortedError
 from pneumo_ros.experiment.programme import Programme, Trial
+from pneumo_ros.experiment.trial_result import AbortedError
 from pneumo_ros.experiment.voltages import Constant, Steps
 
 SAMPLE = 0.01  # s

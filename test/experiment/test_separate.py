@@ -6,10 +6,10 @@ import pytest
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment.constant_voltage import constant_voltage
-from pneumo_ros.experiment.evidence import Noise
 from pneumo_ros.experiment.offers import Offer, Part, menu
 from pneumo_ros.experiment.separate import CLEAR, NOTHING, Separation, rivals, separate
 from pneumo_ros.experiment.suggestion import best, suggestion
+from pneumo_ros.experiment.whitened import Noise
 from pneumo_ros.plant import load_model
 
 AXIS = load_model("axis")

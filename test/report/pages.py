@@ -49,14 +49,14 @@ def longer(run: RunComparison, times: int) -> RunComparison:
     def tile(values: np.ndarray) -> np.ndarray:
         return np.tile(values, times)
 
-    grid = run.course.run
+    grid = run.motion.run
     signals = {name: tile(getattr(grid, name)) for name in ("position", "pressure_a", "pressure_b", "measured")}
     grid = replace(grid, **signals, input=np.resize(grid.input, (len(grid) * times - 1) * 10))
     return replace(
         run,
         samples=len(grid),
         duration=float(grid.time[-1]),
-        course=replace(run.course, run=grid, input=tile(run.course.input)),
+        motion=replace(run.motion, run=grid, input=tile(run.motion.input)),
         masks={name: tile(mask) for name, mask in run.masks.items()},
         predicted={name: tile(error) for name, error in run.predicted.items()},
         free_errors={name: tile(error) for name, error in run.free_errors.items()},

@@ -95,14 +95,14 @@ def test_every_plot_is_drawn_and_nothing_is_asked_for(opened: Open, verdict: str
 
 
 def test_the_waterfall_shows_the_course_of_the_error(opened: Open) -> None:
-    visit, course = opened(FOUND), diagnosed(FOUND).course
+    visit, waterfall = opened(FOUND), diagnosed(FOUND).waterfall
     visit.show("waterfall")
     traces = {trace["name"]: trace for trace in visit.traces("waterfall")}
     shown = [traces[name]["x"][1] for name in ("as given", "refitted", "with what was added", "noise floor")]
-    assert shown == pytest.approx([*(error for _, error in course), 1.0], rel=1e-5)
+    assert shown == pytest.approx([*(error for _, error in waterfall), 1.0], rel=1e-5)
     names = visit.page.locator("#waterfall .ytick text").all_text_contents()
     assert names == ["as given", "refitted", "+ viscous friction", "noise floor"]
-    for _, error in course:
+    for _, error in waterfall:
         assert times(error) in visit.page.locator("figure:has(#waterfall) figcaption").inner_text()
 
 
@@ -205,7 +205,7 @@ def test_its_figures_can_be_drawn_as_files(tmp_path: Path) -> None:
     assert {path.stem for path in tmp_path.iterdir()} == set(names)
     drawn = (tmp_path / "waterfall.svg").read_text(encoding="utf-8")
     assert "+ viscous friction" in drawn
-    assert all(times(error) in drawn for _, error in diagnosed(FOUND).course)
+    assert all(times(error) in drawn for _, error in diagnosed(FOUND).waterfall)
 
 
 def test_numbers_have_the_decimals_that_their_uncertainty_leaves() -> None:

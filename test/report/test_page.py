@@ -104,7 +104,7 @@ def test_data_cannot_end_its_block() -> None:
 def test_a_run_that_could_not_be_judged_or_that_diverged_has_its_page() -> None:
     model, comparison = compared()
     run = comparison.runs[0]
-    still = replace(run.course.run, position=0.0 * run.course.run.position, input=0.0 * run.course.run.input)
+    still = replace(run.motion.run, position=0.0 * run.motion.run.position, input=0.0 * run.motion.run.input)
     found = compare(load_model(), [still], 0.5)
     lost = replace(found.runs[0], free={name: float("inf") for name in found.runs[0].free})
     found = replace(found, runs=(lost,))

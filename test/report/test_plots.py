@@ -37,11 +37,11 @@ def test_zooming_in_shows_every_sample_as_it_was_measured(visit: Visit) -> None:
     visit.wait_for_range(POSITION, 0.3 * SECONDS, 0.35 * SECONDS)
     trace = visit.traces(POSITION)[0]
     run = compared()[1].runs[0]
-    index = [round(t / run.course.run.sample_time) for t in trace["x"]]
+    index = [round(t / run.motion.run.sample_time) for t in trace["x"]]
     assert index == list(range(index[0], index[0] + len(index)))
     assert len(index) == pytest.approx(0.05 * SECONDS * 1000, abs=20)
     noise = 1e3 * run.error["position_m"].noise
-    assert trace["y"] == pytest.approx(1e3 * run.course.run.position[index], abs=0.11 * noise)
+    assert trace["y"] == pytest.approx(1e3 * run.motion.run.position[index], abs=0.11 * noise)
 
 
 def test_a_drag_zooms_every_plot_of_the_run_and_no_other(visit: Visit) -> None:

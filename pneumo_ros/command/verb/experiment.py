@@ -118,9 +118,9 @@ def _named(options: argparse.Namespace) -> "Programme":
 def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[Programme | None, dict[str, Any]]":
     """The programme that best tells the two effects apart, None if none does; and what all of them tell, as data."""
     from pneumo_ros.command.separating import separation_dict, separation_text
-    from pneumo_ros.experiment.evidence import Noise
     from pneumo_ros.experiment.separate import separate
     from pneumo_ros.experiment.suggestion import best, suggestion
+    from pneumo_ros.experiment.whitened import Noise
 
     noise, (first, second) = Noise(), options.separate
     with console.progress("Separating") as progress:
@@ -156,7 +156,7 @@ def _use(path: str) -> str:
 
 def plan_text(programme: "Programme", rehearsal: "Rehearsal") -> str:
     """The trials as the model predicts them, and the path of the piston."""
-    from pneumo_ros.experiment.outcome import ENDS
+    from pneumo_ros.experiment.trial_result import ENDS
 
     rows = [("", "voltage", "speed", "way", "valve open", "ends because")]
     for one in rehearsal.outcomes:

@@ -12,9 +12,9 @@ from std_msgs.msg import Float64
 
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.experiment.conductor import Conductor
-from pneumo_ros.experiment.outcome import AbortedError
 from pneumo_ros.experiment.programme_file import programme_text
 from pneumo_ros.experiment.summary import recorded, summary
+from pneumo_ros.experiment.trial_result import AbortedError
 from pneumo_ros.files import write_whole
 from pneumo_ros.records.contract import COMMAND, JOINT_STATES
 from pneumo_ros.ros import messages, readers

@@ -14,7 +14,7 @@ from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Library, load_model, model_from_dict
 from pneumo_ros.ros.description import Description, describe
 from pneumo_ros.ros.diagnostics import Health
-from pneumo_ros.ros.identification import outcome
+from pneumo_ros.ros.identification import result_file
 from pneumo_ros.ros.identification.arrivals import Arrivals, Print
 from pneumo_ros.ros.identification.settings import SETTINGS
 from pneumo_ros.ros.identification.target import Target
@@ -130,14 +130,14 @@ class Identification(AxisNode):
         self._progress, self._stage = 100, "idle"
         self.model = model_from_dict(result["machine"], self.start_model.name, Library(self._files))
         try:
-            path = outcome.store(self.model, result, Path(self.parameters["output"]).expanduser())
+            path = result_file.store(self.model, result, Path(self.parameters["output"]).expanduser())
         except (PneumoError, OSError) as error:
             self._fail_softly(f"the machine file cannot be written: {error}")
         else:
             self._last = result["machine_file"] = str(path)
-        self.get_logger().info(outcome.sentence(result))
+        self.get_logger().info(result_file.sentence(result))
         self._description.publish()
-        self._publish({**outcome.message(result), "applied": None})
+        self._publish({**result_file.message(result), "applied": None})
         if self.parameters["apply"]:
             self._apply(result)
 
@@ -148,14 +148,14 @@ class Identification(AxisNode):
 
     def _apply(self, result: dict[str, Any]) -> None:
         """Set what was determined on the target, and tell what became of it."""
-        values, name = outcome.determined(result), self.parameters["target"]
+        values, name = result_file.determined(result), self.parameters["target"]
 
         def done(successful: bool, reason: str) -> None:
             self._applied = f"set on {name}" if successful else f"refused by {name}: {reason}"
             tell = self.get_logger().info if successful else self.get_logger().error
             tell(f"{len(values)} parameters {self._applied}")
             applied = {"target": name, "successful": successful, "reason": reason, "parameters": values}
-            self._publish({**outcome.message(result), "applied": applied})
+            self._publish({**result_file.message(result), "applied": applied})
 
         self._target.set(name, values, done)
 

@@ -3,7 +3,7 @@
 import numpy as np
 from identify.making import own
 
-from pneumo_ros.diagnose.course import alike_sensors, follow_each, frame_of
+from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of
 from pneumo_ros.plant import Model
 
 SENSORS = ("position_sensor_delay", "pressure_sensor_offset")

@@ -6,12 +6,12 @@ from typing import cast
 import numpy as np
 import pytest
 
+from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.court import magnitude, remaining, size_in, stable, undetermined
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.diagnose.judging import magnitude, remaining, size_in, stable, undetermined
 from pneumo_ros.diagnose.steps import Step, without
-from pneumo_ros.diagnose.trial import MATERIAL, Trial
 from pneumo_ros.plant import load_model
 
 MODEL = load_model("axis")
@@ -100,12 +100,12 @@ def test_a_size_within_its_deviations_of_none_may_be_none(
 
 def test_a_round_whose_effect_vanished_says_so() -> None:
     h = Hypothesis("constant_load", LOAD, np.array([1.0]), np.empty(0), np.empty(0), t=50.0)
-    trial = Trial(h, np.empty(0), {"momentum": 0.9}, 9.0, 1.0, True, 1.0, True, 0.0, 100.0)
-    step = Step(MODEL, (trial,), trial, (), {}, {})
-    assert without(step, ["spring_load"], "it is gone").added is trial
+    candidate = Candidate(h, np.empty(0), {"momentum": 0.9}, 9.0, 1.0, True, 1.0, True, 0.0, 100.0)
+    step = Step(MODEL, (candidate,), candidate, (), {}, {})
+    assert without(step, ["spring_load"], "it is gone").added is candidate
     changed = without(step, ["constant_load"], "it is gone")
     assert changed.added is None
-    assert changed.trials[0].objections == ("it is gone",)
+    assert changed.candidates[0].objections == ("it is gone",)
 
 
 @pytest.mark.parametrize(
@@ -120,19 +120,19 @@ def test_what_base_parameters_stand_in_for_is_no_shape_of_another_effect(
     gain: float, rest: float, objects: bool
 ) -> None:
     h = Hypothesis("constant_load", LOAD, np.ones(1), np.empty(0), np.empty(0), t=10.0, relief=6.0)
-    trial = Trial(h, np.empty(0), {"chamber_a": gain}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0, rest=rest)
-    assert trial.absorbed
-    assert any("a shape, no effect" in words for words in trial.objections) is objects
+    candidate = Candidate(h, np.empty(0), {"chamber_a": gain}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0, rest=rest)
+    assert candidate.absorbed
+    assert any("a shape, no effect" in words for words in candidate.objections) is objects
 
 
 def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
     """A thousandth of a large rest in another equation is chance."""
-    trial = Trial(
+    candidate = Candidate(
         Hypothesis("line_delay", (), np.empty(0), np.empty(0), np.empty(0)), np.empty(0),
         {"momentum": 0.001, "chamber_a": 0.5}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0,
     )  # fmt: skip
     first, now = {"momentum": 2e5, "chamber_a": 1000.0}, {"momentum": 1e5, "chamber_a": 4.0}
-    assert remaining(trial, first, now) == pytest.approx(0.004)
+    assert remaining(candidate, first, now) == pytest.approx(0.004)
 
 
 @pytest.mark.parametrize(("elsewhere", "objects"), [(frozenset({"chamber_a"}), False), (frozenset[str](), True)])
@@ -140,8 +140,8 @@ def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere:
     """Friction that follows the pressures, beside a gain of a pressure sensor that had been bent to make up for it."""
     h = Hypothesis("pressure_dependent_friction", (), np.empty(0), np.empty(0), np.empty(0), t=200.0)
     gain = {"momentum": 0.99, "chamber_a": -1.09}
-    trial = Trial(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
-    assert any("worse" in words for words in trial.objections) is objects
+    candidate = Candidate(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
+    assert any("worse" in words for words in candidate.objections) is objects
 
 
 @pytest.mark.parametrize(
@@ -156,5 +156,5 @@ def test_a_profile_of_a_texture_is_no_effect(name: str, force: float, objects: b
     """Of forces below a hundredth of the drive it would have to explain nearly all, for it can follow any."""
     own = coordinates(MODEL.library.find(name))
     h = Hypothesis(name, own, np.full(len(own), 0.3), np.empty(0), np.empty(0), t=20.0)
-    trial = Trial(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)
-    assert any("noise does not explain" in words for words in trial.objections) is objects
+    candidate = Candidate(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)
+    assert any("noise does not explain" in words for words in candidate.objections) is objects

@@ -18,7 +18,7 @@ from pneumo_ros.runs.sensors import shifted, taken_back
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-BLOCK = 32  # parameter vectors driven at once: as many as fit in memory beside each other
+LANES_AT_ONCE = 32  # parameter vectors driven at once: as many as fit in memory beside each other
 QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
 SHORT = 1.01e-3  # s: a sample as short is one part where candidates are ranked, which errs by a hundredth of an effect
 LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
@@ -84,7 +84,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     parts = 1 if ranking and frame.run.sample_time < SHORT else QUICK
     corrects = sensing(model, parameters)
     for drive, own in ((_as_measured, np.flatnonzero(~corrects)), (_corrected, np.flatnonzero(corrects))):
-        for rows in (own[k : k + BLOCK] for k in range(0, len(own), BLOCK)):
+        for rows in (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE)):
             states, mean = drive(model, frame, parameters[rows], parts)
             for k, x, m in zip(rows, states, mean, strict=True):
                 yield Followed(int(k), x, centred(m), drive is _as_measured)

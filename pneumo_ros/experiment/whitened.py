@@ -19,11 +19,11 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 FAMILIES = ("momentum while sliding", "pressure in chamber a", "pressure in chamber b", "force at breakaway")
-RATE = 1000.0  # Hz, of the recordings whose noise is given
+NOISE_RATE = 1000.0  # Hz, of the recordings whose noise is given
 BREAKAWAY = 0.7  # N: scatter of the force at which real pistons slip
 _RAMP = 0.02  # s until a slip shows: what the force rises in it adds to the scatter
 _STEP = 2e-3  # s, of the integration along the motion
-_PIECE, _HOLD = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
+_SLIDE_SAMPLES, _HOLD_SAMPLES = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
 _TINY = 1e-9  # m/s, velocity of a piston about to slip
 
 
@@ -37,20 +37,20 @@ class Noise:
     @property
     def scaled(self) -> tuple[float, float]:
         """The same information, at the samples of a record."""
-        share = 1.0 / np.sqrt(RATE * INTERVAL)
+        share = 1.0 / np.sqrt(NOISE_RATE * INTERVAL)
         return float(self.position * share), float(self.pressure * share)
 
 
-class Evidence:
+class Whitened:
     """The whitened residuals of models along one record; all models are whitened alike, as `about` says."""
 
     def __init__(self, record: Record, about: Model, noise: Noise) -> None:
         self.record = record
         self._mass = about["piston.mass"]
         self._noise = noise.scaled
-        pieces = _pieces(record.sliding, _PIECE + 2)
-        self._slides = np.zeros((0, _PIECE + 2), dtype=np.int64) if record.part.blocked else pieces
-        self._holds = _pieces(record.recorded, _HOLD)
+        pieces = _pieces(record.sliding, _SLIDE_SAMPLES + 2)
+        self._slides = np.zeros((0, _SLIDE_SAMPLES + 2), dtype=np.int64) if record.part.blocked else pieces
+        self._holds = _pieces(record.recorded, _HOLD_SAMPLES)
         self._events = slice(0, 0) if record.part.blocked or "z" not in about.states else slice(None)
         machine = record.part.machine(about)
         self._whitener = self._whiten_sliding(machine)
@@ -116,7 +116,7 @@ class Evidence:
         Noise of the position comes in by its second difference and, times the slope of friction over velocity, by its
         first; noise of the pressures by the areas.
         """
-        rows, width = _PIECE, _PIECE + 2
+        rows, width = _SLIDE_SAMPLES, _SLIDE_SAMPLES + 2
         eye = [np.eye(rows, width, k) for k in range(3)]
         second = self._mass * (eye[0] - 2.0 * eye[1] + eye[2]) / INTERVAL**2
         first = (eye[2] - eye[0]) / (2.0 * INTERVAL)

@@ -20,15 +20,15 @@ REST_LEAST = 0.025  # of what was left at first: less is how an added effect's s
 NEARLY = 0.95  # of what noise does not explain: one effect does not explain the rest of another's shape that well
 RELIEF, T_PRIOR = 4.5, 3.0  # log likelihood, and deviations, by which priors alone speak for an effect
 MATERIAL = 0.05  # of the usual size: a fifth of it, in a shape that shows a quarter of that, still counts
-MOSTLY = 0.6  # of an equation's mean square, noise and all, on held-out runs
+MOST_REMOVED = 0.6  # of an equation's mean square, noise and all, on held-out runs
 PLAIN = 0.8  # of what noise does not explain: who removes that on held-out runs is no accident, whatever its t
-SLOW = 10.0
+SLOWEST_USUAL = 10.0
 MECHANICS = ("momentum", "breakaway")  # equations that show a texture of friction
 
 
 @dataclass(frozen=True)
-class Trial:
-    """One candidate on trial: its fit, and what the runs that took no part in it say."""
+class Candidate:
+    """One candidate: its fit, and what the runs that took no part in it say."""
 
     hypothesis: Hypothesis
     held: Array = field(repr=False)  # residual on held-out runs
@@ -58,7 +58,7 @@ class Trial:
     @property
     def clear(self) -> bool:
         """Whether it explains nearly all of what noise does not in an equation, or removes most of what is there."""
-        return self.share >= PLAIN or max(self.gain.values(), default=0.0) >= MOSTLY
+        return self.share >= PLAIN or max(self.gain.values(), default=0.0) >= MOST_REMOVED
 
     @property
     def slowness(self) -> float:
@@ -111,7 +111,7 @@ class Trial:
         h, found = self.hypothesis, self._shape_objections() + ([] if self.absorbed else self._data_objections())
         if self.size < MATERIAL:
             found.append(f"its size is {self.size:.2g} of the usual one")
-        if self.slowness > SLOW:
+        if self.slowness > SLOWEST_USUAL:
             found.append(f"its time constant is {self.slowness:.0f} times the usual one")
         ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if _at_end(c, float(u))]
         if ends:

@@ -8,26 +8,30 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
-from pneumo_ros.diagnose.court import magnitude
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
+from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
 from pneumo_ros.diagnose.mechanics import moves
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
-from pneumo_ros.diagnose.slips import FEW, POOR, Slips, errors, friction_priors, with_values_of
+from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.diagnose.steps import Step
-from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.refit import refit_segments
 
 Array = NDArray[np.float64]
 
 BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
-SHARE = 0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
-TRIED = 3  # candidates that are fitted, of all that begin well
-ENOUGH = 0.9  # share of the error beyond the noise's
-PART = 0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
-RESIZED, BETTER = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
+SHARE_REMOVED = (
+    0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
+)
+MOST_FITTED = 3  # candidates that are fitted, of all that begin well
+EXPLAINED = 0.9  # share of the error beyond the noise's
+PART_EXPLAINED = (
+    0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
+)
+RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: starts of a state that an effect has for itself are free in every event, and so follow any slow force
 CONTRADICTED = 10.0
@@ -56,7 +60,7 @@ def longer(
     first: bool,
     limits: list[str],
 ) -> tuple[Model, Step | None]:
-    """The model with the effect that its breakaways and reversals ask for, and the trials; None where they are fine.
+    """The model with the effect that its breakaways and reversals need, and the candidates; None where they are fine.
 
     `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: what the equations
     along the motion say of an effect beside it; `first`: nothing was added; `limits` takes a sentence for every loop
@@ -69,12 +73,14 @@ def longer(
     if not poor:
         return model, None
     q = poor[0]
-    tried = Candidates(alone, found, known, against, held, q, limits).tried(blind(screened, alone))
+    tried = SlipFits(alone, found, known, against, held, q, limits).tried(blind(screened, alone))
     effects = [coordinates(alone.library.find(c.name)) for c in tried]
-    trials = [as_trial(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)]
-    good = [(c, t) for c, t in zip(tried, trials, strict=True) if not t.objections]
+    candidates = [
+        as_candidate(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)
+    ]
+    good = [(c, t) for c, t in zip(tried, candidates, strict=True) if not t.objections]
     usual = float(np.quantile(held, q))
-    step = Step(model, tuple(trials), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
+    step = Step(model, tuple(candidates), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
     if good:
         chosen = good[0][0]
         model = with_values_of(model.with_effects([*model.effects, chosen.name]), chosen.model)
@@ -82,7 +88,7 @@ def longer(
 
 
 @dataclass(frozen=True)
-class Candidates:
+class SlipFits:
     """Effects to try beside `alone` on its events, by the `q`-quantile of errors; `held`: of the held-out ones now.
 
     `known`: standard deviations of the friction; `against`: what the equations along the motion say of an effect.
@@ -107,7 +113,7 @@ class Candidates:
         with ThreadPoolExecutor(2) as pool:
             begin = list(pool.map(begins, names))
         result = list[Slipping]()
-        for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:TRIED]:
+        for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:MOST_FITTED]:
             result.append(self._fitted(name, model))
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
@@ -123,7 +129,7 @@ class Candidates:
         refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
         fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in effect}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
-        asked_for = self._share(held) >= SHARE
+        asked_for = self._share(held) >= SHARE_REMOVED
         loss = self.against(name, {n: fitted[n] for n in std}) if asked_for else 0.0
         return Slipping(name, fitted, train, held, std, loss)
 
@@ -133,7 +139,7 @@ class Candidates:
         Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
         the equations along the motion speak against.
         """
-        if self._share(c.held) < PART:
+        if self._share(c.held) < PART_EXPLAINED:
             return c
         ways = (self._followed(c, factor) for factor in RESIZED)
         return next((other for other in ways if other is not c), c)
@@ -156,11 +162,11 @@ class Candidates:
     def _better(self, new: Slipping, old: Slipping) -> bool:
         """Whether it is worth another go: it explains more, or enough of what the other was refused for."""
         if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
-            return self._left(new) <= BETTER * self._left(old)
-        return new.against < CONTRADICTED and self._share(new.held) >= SHARE
+            return self._left(new) <= WORTH_RESTART * self._left(old)
+        return new.against < CONTRADICTED and self._share(new.held) >= SHARE_REMOVED
 
     def _explains(self, c: Slipping) -> bool:
-        return self._share(c.held) > ENOUGH and c.against < CONTRADICTED
+        return self._share(c.held) > EXPLAINED and c.against < CONTRADICTED
 
     def _share(self, held: Array) -> float:
         return share_removed(self.held, held, self.q)
@@ -184,7 +190,7 @@ def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
     for h in screened:
         spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])
         seen[h.name] = max(seen.get(h.name, 0.0), float(np.min(1.0 / spread)))
-    few = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW]
+    few = [n for n in seen if n in builds and moves(alone, n) and len(builds[n]) <= FEW_PARAMETERS]
     return [n for n in few if seen[n] < BLIND or library.find(n).states]
 
 
@@ -204,7 +210,7 @@ def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
     return k.is_size and abs(value - (k.neutral or 0.0)) > 2.0 * std.get(k.name, np.inf)
 
 
-def as_trial(
+def as_candidate(
     c: Slipping,
     effect: tuple[Coordinate, ...],
     base_train: Array,
@@ -212,7 +218,7 @@ def as_trial(
     q: float,
     samples: int,
     first: bool,
-) -> Trial:
+) -> Candidate:
     """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
 
     `samples` of an event. All events together tell whether there is an effect, those held out whether it predicts.
@@ -222,13 +228,13 @@ def as_trial(
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
-    enough = "" if share >= SHARE else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
+    enough = "" if share >= SHARE_REMOVED else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
     if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
         enough = f"the equations along the motion speak against it (log likelihood -{c.against:.3g})"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is no larger than its uncertainty"
     z = deviations_better(base_held, c.held, samples)
-    return Trial(
+    return Candidate(
         h, np.empty(0), {"slip": gain}, z, magnitude(effect, u), True, share, first, 0.0,
         float(np.quantile(base_train, q) - np.quantile(c.train, q)), refused=enough, std=c.std,
     )  # fmt: skip

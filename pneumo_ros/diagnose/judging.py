@@ -1,4 +1,4 @@
-"""Candidates put on trial: is a size stable, do traces shifted in time do as well, what do held-out runs gain."""
+"""Candidates judged: is a size stable, do traces shifted in time do as well, what do held-out runs gain."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.diagnose.candidate import GAIN_LEAST, T_LEAST, Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import (
@@ -18,36 +19,35 @@ from pneumo_ros.diagnose.hypothesis import (
     weights,
 )
 from pneumo_ros.diagnose.measures import acting, advantage, equation_of, explained, force, gains, usual_gains
-from pneumo_ros.diagnose.trial import GAIN_LEAST, T_LEAST, Trial
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
 TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
 DECOYS = 12
-KNOWN = 0.5  # of a size: runs that know it less well do not speak against it
+WELL_KNOWN = 0.5  # of a size: runs that know it less well do not speak against it
 FEW_RUNS = 3
-SURE = 2.0  # deviations from none: a size that is nearer may be none
+NONE_WITHIN = 2.0  # deviations from none: a size that is nearer may be none
 
 
-def put_on_trial(
+def judged(
     base: BaseFit,
     held: BaseFit,
     hypotheses: Sequence[Hypothesis],
     residuals: Sequence[Array],
     nothing: Hypothesis,
     first: bool,
-) -> list[Trial]:
-    """Trials of refined hypotheses with their held-out residuals, best score first.
+) -> list[Candidate]:
+    """Refined hypotheses as candidates, with their held-out residuals, best score first.
 
-    All is told against `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
+    All are compared with `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
     """
     rng, found = np.random.default_rng(0), []
     reference = nothing.likelihood + log_likelihood(held.evidence, held.residual)
     for h, r in zip(hypotheses, residuals, strict=True):
         there = acting(held.residual, r)
         found.append(
-            Trial(
+            Candidate(
                 hypothesis=replace(h, relief=h.relief - nothing.relief),
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
@@ -65,7 +65,7 @@ def put_on_trial(
                 elsewhere=_elsewhere(base.evidence, h),
             )
         )
-    return sorted(found, key=lambda trial: -trial.score)
+    return sorted(found, key=lambda candidate: -candidate.score)
 
 
 def sizes(own: Sequence[Coordinate], at: Array) -> Array:
@@ -97,7 +97,7 @@ def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
     Where the data say nothing at all, of infinite deviation, they do not say that either.
     """
     fading = [c for c in coordinates(model.library.find(name)) if c.is_size]
-    return all(abs(model[c.name] - (c.neutral or 0.0)) <= SURE * std[c.name] < np.inf for c in fading)
+    return all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] < np.inf for c in fading)
 
 
 def stable(base: BaseFit, h: Hypothesis) -> bool:
@@ -116,7 +116,7 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
         inverse = np.linalg.inv(normal - A[own].T @ A[own] + np.diag(ridge))
         # the other runs' optimum: their gradient is minus that of those left out
         shift, covariance = (inverse @ A[own].T @ e[own])[p:][sizes], inverse[p:, p:][np.ix_(sizes, sizes)]
-        known = float(u @ covariance @ u) < (KNOWN * float(u @ u)) ** 2
+        known = float(u @ covariance @ u) < (WELL_KNOWN * float(u @ u)) ** 2
         if known and float(u @ (u + shift)) < 0.5 * float(u @ u):
             return False
     return True
@@ -165,13 +165,13 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
     return largest
 
 
-def remaining(trial: Trial, first: dict[str, float], now: dict[str, float]) -> float:
-    """Share of what was left at first that is still there, in the equation where the trial helps most.
+def remaining(candidate: Candidate, first: dict[str, float], now: dict[str, float]) -> float:
+    """Share of what was left at first that is still there, in the equation where the candidate helps most.
 
     Of those in which its gain counts: a thousandth of a large rest elsewhere is more, and chance.
     """
-    helped = [n for n, gain in trial.gain.items() if gain >= GAIN_LEAST] or list(trial.gain)
-    name = max(helped, key=lambda n: trial.gain[n] * now.get(n, 0.0))
+    helped = [n for n, gain in candidate.gain.items() if gain >= GAIN_LEAST] or list(candidate.gain)
+    name = max(helped, key=lambda n: candidate.gain[n] * now.get(n, 0.0))
     return now.get(name, 0.0) / first[name] if first.get(name) else 1.0
 
 

@@ -17,7 +17,7 @@ class AbortedError(PneumoError):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TrialResult:
     """One trial: why it ended, how long the valve was open [s], the way from its start [m], the final speed [m/s]."""
 
     name: str

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose import slip_trials
+from pneumo_ros.diagnose import slip_candidates
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.slip_trials import Candidates, Slipping, as_trial, deviations_better, resized
+from pneumo_ros.diagnose.slip_candidates import SlipFits, Slipping, as_candidate, deviations_better, resized
 from pneumo_ros.diagnose.slips import Slips
-from pneumo_ros.diagnose.trial import Trial
 from pneumo_ros.plant import Model, load_model
 
 Array = NDArray[np.float64]
@@ -19,9 +19,9 @@ RISE = 12.0  # N
 SAMPLES = 300
 
 
-def tried(model: Model, before: Array, after: Array, std: dict[str, float], q: float = 0.5) -> Trial:
+def tried(model: Model, before: Array, after: Array, std: dict[str, float], q: float = 0.5) -> Candidate:
     effect = coordinates(MODEL.library.find(EFFECT))
-    return as_trial(Slipping(EFFECT, model, after, after, std), effect, before, before, q, SAMPLES, True)
+    return as_candidate(Slipping(EFFECT, model, after, after, std), effect, before, before, q, SAMPLES, True)
 
 
 @pytest.mark.parametrize(("std", "objects"), [(1.5, False), (13.8, True), (None, True)])
@@ -30,9 +30,9 @@ def test_a_size_that_nothing_determines_is_refused(std: float | None, objects: b
     model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
     before, after = np.full(40, 10.0), np.full(40, 1.0)
     known = {} if std is None else {f"{EFFECT}.rise": std}
-    trial = tried(model, before, after, known)
-    assert any("uncertainty" in words for words in trial.objections) is objects
-    assert bool(trial.objections) is objects
+    candidate = tried(model, before, after, known)
+    assert any("uncertainty" in words for words in candidate.objections) is objects
+    assert bool(candidate.objections) is objects
 
 
 @pytest.mark.parametrize(("changed", "objects"), [(16, False), (3, True)])
@@ -50,9 +50,9 @@ def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
     before, after = np.full(40, 10.0), np.full(40, 1.0)
     for against, objects in ((-3.0, False), (60.0, False), (130.0, True)):  # forty events speak for it by 3 each
         candidate = Slipping(EFFECT, model, after, after, {f"{EFFECT}.rise": 1.5}, against)
-        trial = as_trial(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
-        assert any("speak against it" in words for words in trial.objections) is objects
-        assert bool(trial.objections) is objects
+        candidate = as_candidate(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
+        assert any("speak against it" in words for words in candidate.objections) is objects
+        assert bool(candidate.objections) is objects
 
 
 def test_sizes_grow_and_shapes_stay() -> None:
@@ -68,7 +68,7 @@ LAG, TRUE = "friction_lag", 8e-3
 BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # sizes that the candidates begin with
 
 
-class Stuck(Candidates):
+class Stuck(SlipFits):
     """Fits that stay where they begin: so far from the true lag, so bad; the other candidate is refused, not bad."""
 
     def _fitted(self, name: str, begin: Model) -> Slipping:
@@ -85,7 +85,7 @@ def test_a_fit_that_explains_part_is_begun_anew_from_other_sizes(begun: float, m
         key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)
         return 1.0, alone.with_effects([*alone.effects, name], {key: BEGUN[name]})
 
-    monkeypatch.setattr(slip_trials, "by_sizes", begins)
+    monkeypatch.setattr(slip_candidates, "by_sizes", begins)
     monkeypatch.setitem(BEGUN, LAG, begun)
     nothing = np.empty(0, dtype=np.int64)
     tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([*BEGUN])
