@@ -39,12 +39,6 @@ class Evidence:
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
 
-    def only(self, chosen: Sequence[int]) -> tuple["Evidence", NDArray[np.bool_]]:
-        """The evidence of some of the runs, by index, and which residuals are theirs."""
-        part = object.__new__(Evidence)
-        part._index([self.by_run[i] for i in sorted(chosen)])
-        return part, np.isin(self.run, chosen)
-
     def _index(self, by_run: list["RunEvidence"]) -> None:
         self.by_run = by_run
         self.runs = tuple(part.run for part in by_run)

@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.hypothesis import (
     missing,
     weights,
 )
+from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import default_free
@@ -29,6 +30,7 @@ Array = NDArray[np.float64]
 BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
 PROBE_SHARE = 0.005  # of a prior, or of what is usual of an effect
 AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
+SCREENED = 50.0  # s of recordings by which candidates are ranked first
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
 
@@ -116,6 +118,19 @@ class Fitter:
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
         names, (usual, others) = self.added(model) if bent is None else bent, self.conditions
         return freed(train, names, usual), freed(held, names, others)
+
+    def ranking_fit(self, model: Model) -> BaseFit:
+        """The model on the part of the training evidence by which candidates are ranked first; as free as in `fits`."""
+        if self.part is self.train:
+            return self.fits(model)[0]
+        seen = relative(conditions(self.part), conditions(self.train))
+        return freed(base_fit(self.part, self.whole, model, self.known(model)), self.added(model), seen)
+
+    @cached_property
+    def part(self) -> Evidence:
+        """The evidence by which candidates are ranked first: a share of every run, all of them where they are short."""
+        some = stretches(self.train.runs, SCREENED)
+        return Evidence(self.start, some) if some else self.train
 
     def added(self, model: Model) -> list[str]:
         """Effects of `model` that the start lacks."""

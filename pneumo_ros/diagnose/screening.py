@@ -1,7 +1,6 @@
 """Every candidate fitted linearly to part of the evidence, and those chosen that are fitted in earnest."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,6 @@ from pneumo_ros.diagnose.hypothesis import (
     cluster_robust,
     family_likelihoods,
     family_scales,
-    huber,
     log_likelihood,
     missing,
     solve,
@@ -25,24 +23,10 @@ from pneumo_ros.diagnose.hypothesis import (
 
 Array = NDArray[np.float64]
 
-SCREENED = 50.0  # s of recordings by which candidates are ranked first
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
 IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
 SMALL_STEP = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
-
-
-def worst(base: BaseFit) -> BaseFit:
-    """The part of the training evidence where the model is worst: enough to rank by."""
-    runs, left = [], SCREENED
-    e = base.evidence
-    misfit = [float(np.mean(huber(base.residual[e.run == i]))) for i in range(len(e.runs))]
-    for i in np.argsort(misfit)[::-1]:
-        if left > 0.0:
-            runs.append(int(i))
-            left -= float(e.runs[i].time[-1])
-    part, rows = e.only(runs)
-    return replace(base, evidence=part, residual=base.residual[rows], slopes=base.slopes[rows])
 
 
 def screen(base: BaseFit) -> list[Hypothesis]:

@@ -18,7 +18,7 @@ from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import harmless, no_worse, pays, windowed
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
-from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist, worst
+from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
 from pneumo_ros.diagnose.steps import Found, Step, without
@@ -183,7 +183,7 @@ class Search:
 
     def hypotheses(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
-        part = worst(base)
+        part = self.fitter.ranking_fit(base.model)
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
         short = shortlist(part, bare, promising or screened[:SHOWN_ANYWAY], SHORTLIST)

@@ -59,12 +59,3 @@ def test_ranking_errs_by_hundredths_of_an_effect(name: str) -> None:
     exact, ranked = (np.diff(evidence.residuals(whole, variants, ranking=r), axis=0) for r in (False, True))
     error = np.sqrt(np.mean((ranked - exact) ** 2) / np.mean(exact**2))
     assert 0.0 < error < 0.03, "and is not the same evaluation"
-
-
-def test_part_of_the_evidence_is_that_of_its_runs() -> None:
-    model, _, first = own("steps")
-    _, _, second = own("sweep")
-    evidence = Evidence(model, [first, second])
-    part, rows = evidence.only([1])
-    assert [run.name for run in part.runs] == [second.name]
-    assert np.array_equal(part.residual(model), evidence.residual(model)[rows])
