@@ -13,7 +13,7 @@ PATIENCE = 0.1  # s
 
 
 class Asking:
-    """Sends joint states of a piston that moves along a sine, in the ROS domain that the environment names by now."""
+    """Sends joint states of a piston that moves along a sine, in the ROS domain that the environment names."""
 
     def __init__(self, rate: float) -> None:
         """`rate` [Hz] of the joint states."""
@@ -89,7 +89,7 @@ def answers(seconds: float, rate: float) -> None:
     print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")
     print(f"{'':34} {'p50':>9} {'p99':>9} {'largest':>9} {'unanswered':>11} {'rate':>8} {'controller':>11}")
     for law in LAWS:
-        patient = ("-p", "measurement_timeout:=10.0")  # 0 V into a silence would be taken for an answer
+        patient = ("-p", "measurement_timeout:=10.0")  # else the 0 V that follows a silence would count as an answer
         with nodes(("controller", *REFERENCE, *patient, "-p", f"law:={law}")) as pids:
             while not asking.ready():
                 time.sleep(0.1)
@@ -100,6 +100,6 @@ def answers(seconds: float, rate: float) -> None:
         p50, p99 = 1e3 * np.percentile(waits, (50, 99))
         columns = f"{p50:6.2f} ms {p99:6.2f} ms {1e3 * waits.max():6.2f} ms {lost:11} {reached:5.0f} Hz {share:11.1%}"
         print(f"{law:34} {columns}", flush=True)
-        while asking.ready():  # the next one must not be taken for this one
+        while asking.ready():  # a late answer must not count as one to the next joint state
             time.sleep(0.1)
     asking.close()

@@ -1,14 +1,15 @@
-"""Diagnosis of machines that hide something: the independent rig simulator records, the diagnosis does not know what.
+"""Diagnosis of machines with a hidden effect: the independent rig simulator records, the diagnosis has to find it.
 
 Each seed is a machine worn by 5 %, with other excitation and noise. `single` hides one effect of the catalogue, in one
-of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides what no
-catalogue has, `healthy` nothing; `rough` and `rough_healthy` those of a machine with a coloured force and a
-friction texture that no model has. Tables show rates with 95 % intervals (Wilson), and the targets beside them.
+of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides an effect
+that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy` those of a machine with a coloured force and
+a friction texture that no model has. Tables show rates with 95 % intervals (Wilson), and the targets beside them.
 
     python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--jobs 2]
 
-Results go to a file as they come, one line of JSON each. What it holds already, for the same code, is not run again: an
-interrupted run goes on where it was. `--seeds 0` prints the tables of what is there; --code those of other code.
+Results go to a file as they come, one line of JSON each. Cases that it already holds for the same code are not run
+again, so that an interrupted run continues. `--seeds 0` prints the tables of the results there are; --code those of
+other code.
 """
 
 import argparse
@@ -119,7 +120,7 @@ def summary(result: dict[str, Any]) -> str:
 
 
 def main() -> int:
-    """Run what is not there yet, print; 1 if a case failed."""
+    """Run the cases that have no result yet, print; 1 if a case failed."""
     options, code = arguments(), code_hash()
     known = stored(options.json)
     broken = run_all([job for job in wanted(options) if (code, *job) not in known], options)

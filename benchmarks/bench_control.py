@@ -1,8 +1,8 @@
 """Control laws on the default machine and on others: tracking, arrival, valve activity; published protocols; time.
 
-All laws have the gains of config/control, found by one procedure (`pneumo tune`), and know the default machine file,
-whatever the plant is. Sensors: 10 um and 300 Pa of noise, no velocity; 1 kHz. The sine is 0.3 m, 0.05 Hz; the moves are
-60 mm in 1 s, held for 19 s.
+All laws have the gains of config/control, found by one procedure (`pneumo tune`), and use the default machine file,
+also when the plant is another machine. Sensors: 10 um and 300 Pa of noise, no velocity; 1 kHz. The sine is 0.3 m, 0.05
+Hz; the moves are 60 mm in 1 s, held for 19 s.
 """
 
 import argparse
@@ -22,7 +22,7 @@ ZHU_STEADY = 5e-5  # m, of Zhu and Barth
 
 
 def main() -> None:
-    """Print what was asked for, by default all."""
+    """Print the tables that the options name, by default all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=("plants", "published", "discovery", "time"), help="one of the tables")
     only = parser.parse_args().only
@@ -46,7 +46,7 @@ def plants() -> None:
 
 
 def _row(name: str, plant: Model, law: str, known: Model = AXIS) -> None:
-    """Print what a law that knows one machine makes of another."""
+    """Print how a law with the file of one machine controls another machine."""
     along = tracking(follow(plant, shipped(law, known), SINE, cases.SINE_SECONDS)[0], cases.SINE_BEGIN)
     ends = arrivals(follow(plant, shipped(law, known), cases.STEPS, 5 * HOLD)[0], HOLD, STEADY)
     print(
@@ -94,7 +94,7 @@ def _rms(law: Law, seed: int) -> float:
 
 
 def published() -> None:
-    """The protocols of two papers on a cylinder of the size they used, and on one unlike its machine file."""
+    """The protocols of two papers, on a cylinder as large as theirs, and on one that differs from its machine file."""
     short = load_model(cases.HERE / "short_cylinder.yaml")
     other = short.with_effects(
         [*short.effects, "valve_spool_dynamics"], {"valve_spool_dynamics.angular_frequency": 400}
@@ -115,7 +115,7 @@ def published() -> None:
 
 
 def _protocols(known: Model, plant: Model) -> list[str]:
-    """What the cascade that knows one machine makes of another."""
+    """Results of the cascade with the file of one machine on another machine."""
     found = []
     for amplitude, frequency in ((0.07, 0.5), (0.06, 0.5), (0.06, 1.0)):
         law = cases.own("short_cylinder_cascade.yaml", known)

@@ -77,7 +77,7 @@ def curve(options: argparse.Namespace, paths: list[str], say: Callable[[str], No
 
 
 def diagnosed(folder: Path, rig: Path) -> float:
-    """Processor seconds of a campaign that is diagnosed too; prints what `pneumo fleet` says of the rig."""
+    """Processor seconds of a campaign with a diagnosis; prints what `pneumo fleet` reports about the rig."""
     from pneumo_ros.command.main import main as pneumo
 
     for date, case in (("1_as_delivered", "healthy"), ("2_after_a_year", "case_2")):
@@ -93,7 +93,7 @@ def diagnosed(folder: Path, rig: Path) -> float:
 
 
 def night(name: str, seconds: float) -> str:
-    """What so many machines take."""
+    """A sentence: the time that MACHINES machines need, and the processors for one night."""
     hours = MACHINES * seconds / 3600.0
     return (
         f"{name}: {seconds:.2f} s of a processor each; {MACHINES:,} machines: {hours:.1f} h of one, "
@@ -102,7 +102,7 @@ def night(name: str, seconds: float) -> str:
 
 
 def main() -> int:
-    """Measure, print."""
+    """Measure and print."""
     options = arguments()
     with tempfile.TemporaryDirectory() as folder:
         paths = recorded(Path(folder))

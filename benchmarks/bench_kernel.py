@@ -1,9 +1,10 @@
 """The plant's kernel against a hand-written C loop, and what it costs to compile and to start it.
 
 One step of 100 us of the base machine: ours, and reference_axis.c (classical Runge-Kutta, gcc -O3 -march=native,
-compiled here). Both follow the same voltages; before timing, both are held to a run of 10 us steps. Repetitions
-alternate, the table shows medians of processor time. At rest the C loop skips exp and sin, ours does not. Then a batch
-of 64 machines on one core, 75 parameter vectors with all effects along one measured motion, and fresh processes.
+compiled here). Both follow the same voltages; before timing, both are compared with a run in steps of 10 us.
+Repetitions alternate, the table shows medians of processor time. At rest the C loop skips exp and sin, ours does not.
+Then a batch of 64 machines on one core, 75 parameter vectors with all effects along one measured motion, and fresh
+processes.
 
     python benchmarks/bench_kernel.py [--repetitions 21] [--starts 5]
 """
@@ -26,7 +27,7 @@ from pneumo_ros.plant import Library, Model, load_model
 
 HERE = Path(__file__).parent
 SAMPLE, STRIDE, STEP, SETS = 1e-3, 10, 1e-4, 64
-VECTORS, SINGLES = 75, 16  # parameter vectors side by side, and those of them that also go one after another
+VECTORS, SINGLES = 75, 16  # parameter vectors in parallel, and how many of them also run one after another
 FLAGS = ["-O3", "-march=native", "-shared", "-fPIC"]
 
 

@@ -1,8 +1,8 @@
 """Times and memory of the workbench, in a real browser: start, idle, zoom of a long recording, response to a slider.
 
 `python benchmarks/bench_workbench.py` needs Chromium and Playwright, as the tests do. The recording has 600,000 samples
-of three signals. A zoom is timed from the end of the drag until the plot is drawn anew, a slider from the key press
-until the response is, both in the page, by the browser's clock.
+of three signals. A zoom is timed from the end of the drag until the plot is redrawn, a slider from the key press
+until the response is redrawn, both in the page, by the browser's clock.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def long_recording(path: Path) -> Path:
-    """Ten minutes at 1 kHz with the noise of sensors; what moves is made up."""
+    """Ten minutes at 1 kHz with the noise of sensors; the motion is invented."""
     rng, time_ = np.random.default_rng(1), np.arange(SAMPLES) * 1e-3
     swing = np.sin(0.7 * time_) * np.sin(0.011 * time_)
     pressures = [3e5 + sign * 1.5e5 * swing + rng.normal(0.0, 300.0, SAMPLES) for sign in (1.0, -1.0)]
@@ -108,7 +108,7 @@ def in_the_browser(browser: Any, folder: Path, bag: Path) -> tuple[list[float], 
 
 
 def zoomed(page: Any, k: int) -> float:
-    """Drag across the upper plot; from the release of the button until the plot is drawn anew."""
+    """Drag across the upper plot; from the release of the button until the plot is redrawn."""
     box = page.locator("#signals .nsewdrag").first.bounding_box()
     height = box["y"] + 0.5 * box["height"]
     begin = box["x"] + (0.2 + 0.04 * k) * box["width"]
@@ -126,7 +126,7 @@ def zoomed(page: Any, k: int) -> float:
 
 
 def slid(page: Any) -> list[float]:
-    """Steps of a slider, each from the key press until the response is drawn anew."""
+    """Steps of a slider, each from the key press until the response is redrawn."""
     page.locator("#tab").get_by_text("Sliders", exact=True).click()
     page.locator("#response .main-svg").first.wait_for()
     slider = page.get_by_label("coulomb friction")

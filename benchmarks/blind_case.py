@@ -26,7 +26,8 @@ WEAKEST = 0.2  # share of full strength
 RANKED = 5  # candidates kept
 KINDS = ("single", "pair", "healthy", "outside", "rough", "rough_healthy")
 PARTNER = {"single": "healthy", "pair": "healthy", "rough": "rough_healthy"}  # the same machine with nothing hidden
-JUDGED = ("plant", "records", "identify", "diagnose", "discover")  # parts of the package that a result depends on
+# Rooms of the package that a result depends on: `diagnose` and all that it imports
+JUDGED = ("plant", "records", "runs", "equations", "shooting", "identify", "compare", "diagnose")
 
 
 def code_hash() -> str:

@@ -24,7 +24,7 @@ def _tank_time(m: Fields) -> float:
 _DROOP: Truths = {"resistance_supply": lambda m: m["feed"], "time_constant": _tank_time}
 _LEAKS: Truths = {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]}
 
-# By the rig's name of the shape. What is not here has another equation than the catalogue, and only a name to compare.
+# By the rig's name of the shape. Other shapes have another equation than the catalogue, and only names to compare.
 TRUE: dict[str, Truths] = {
     "viscous_friction": {"coefficient": lambda m: m["viscous_out"]},
     "asymmetric_friction": {"ratio": lambda m: m["retract_excess"]},
@@ -86,7 +86,7 @@ TRUE: dict[str, Truths] = {
 
 
 def true_parameters(truth: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """By catalogue effect and parameter, what the rig's `truth` of a case says; effects of other shape are left out."""
+    """True values of a case by catalogue effect and parameter; effects with another equation are left out."""
     machine = truth["machine"]
     return {
         hidden["effect"]: {key: float(value(machine)) for key, value in TRUE[hidden["shape"]].items()}

@@ -1,4 +1,4 @@
-"""What the blind benchmark counts, from its results, one dictionary per case."""
+"""Rates and tables of the blind benchmark, from its results, one dictionary per case."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
@@ -120,7 +120,7 @@ def outside_table(results: Sequence[Result]) -> str:
 
 
 def confusion_table(results: Sequence[Result]) -> str:
-    """Truth by what was found for it; additions left over stand beside what was missed, or with nothing."""
+    """Truth by what was found for it; additions without a match are shown beside missed effects, or alone."""
     seen: dict[str, Counter[str]] = defaultdict(Counter)
     for result in results:
         names, added = [hidden["effect"] for hidden in result["hidden"]], additions(result)

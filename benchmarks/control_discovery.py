@@ -55,12 +55,12 @@ def _run(name: str, states: np.ndarray, held: np.ndarray) -> Run:
 
 
 def found() -> Outcome:
-    """What the diagnosis makes of the recordings, by the default machine file."""
+    """The diagnosis of the recordings, starting from the default machine file."""
     return diagnose(AXIS, *recordings())
 
 
 def tracked(known: Model) -> Tracking:
-    """The cascade along the sine on the hidden machine, with what it knows of it."""
+    """The cascade along the sine on the hidden machine, with a given machine file."""
     record, _ = follow(HIDDEN, shipped("cascade", known), SINE, SINE_SECONDS)
     return tracking(record, SINE_BEGIN)
 

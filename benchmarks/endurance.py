@@ -1,11 +1,12 @@
-"""What lasts: a day of simulated time with its balances, and minutes of real time at 1 kHz with every message recorded.
+"""Endurance: a day of simulated time with its balances, and minutes of real time at 1 kHz with every message recorded.
 
-The model: random voltages drive the piston to random places. Over each part the gas in a chamber must hold what came in
-through its port (d(p V) + (gamma - 1) p dV = gamma R T q dt), and the piston must have gained what the pressures did
-and friction took. Residuals are given as shares of what went through; memory must not grow.
+The model: random voltages drive the piston to random places. Over each part the change of the gas in a chamber must
+equal what came in through its port (d(p V) + (gamma - 1) p dV = gamma R T q dt), and the energy of the piston must
+change by the work of the pressures less that of friction. Residuals are relative to the amount exchanged; memory must
+not grow.
 
 The nodes: simulator, controller and recorder in processes of their own. The memory of each, the stamps in the
-recording, of which none may be missing, and the late ticks that the simulator has told.
+recording, of which none may be missing, and the late ticks that the simulator has reported.
 
     python benchmarks/endurance.py [--hours 24] [--minutes 20] [--seed 1]
 
@@ -41,7 +42,7 @@ def arguments() -> argparse.Namespace:
 
 
 class Balances:
-    """Sums of what goes in, comes out and stays, over a part of the time."""
+    """Sums of what enters, leaves and remains, over a part of the time."""
 
     def __init__(self, model: Any) -> None:
         self.model = model
@@ -63,7 +64,7 @@ class Balances:
         self.through[2] += _over(np.abs(seen["effort"] * v), np.full(len(y) - 1, SAMPLE))
 
     def shares(self) -> np.ndarray:
-        """Residuals as shares of what went through (3,)."""
+        """Residuals relative to the amount exchanged (3,)."""
         return np.abs(self.off) / np.maximum(self.through, 1e-300)
 
 
@@ -78,7 +79,7 @@ def memory(pid: int | str = "self") -> float:
 
 
 def simulated(hours: float, seed: int) -> bool:
-    """The table of the model; whether everything held."""
+    """The table of the model; whether all checks passed."""
     from pneumo_ros.plant import load_model
 
     model, random = load_model("axis"), np.random.default_rng(seed)
@@ -103,7 +104,7 @@ def simulated(hours: float, seed: int) -> bool:
 
 
 def recorded(minutes: float) -> bool:
-    """The table of the nodes; whether everything held."""
+    """The table of the nodes; whether all checks passed."""
     import conftest  # a ROS domain of its own, before anything imports rclpy
     from ros.processes import node, running
     from ros.processes import recorded as on_disk
@@ -152,7 +153,7 @@ def late(diagnostics: Any) -> str:
 
 
 def main() -> int:
-    """Run both, print; 1 if anything did not hold."""
+    """Run both, print; 1 if a check failed."""
     options = arguments()
     good = [simulated(options.hours, options.seed)] if options.hours else []
     good += [recorded(options.minutes)] if options.minutes else []

@@ -34,6 +34,8 @@ class FaultyCopy:
         self.folder.mkdir(parents=True)
         subprocess.run(["tar", "-x", "-C", self.folder], input=_git(tree, "archive", "HEAD"), check=True)
         self._sound: dict[str, bool] = {}
+        if (compiled := tree / ".cache" / "kernels").exists():  # by the tests of that tree: saves compiling them again
+            shutil.copytree(compiled, self._kernels())
 
     def place_of(self, wordings: Sequence[str]) -> tuple[Path, str]:
         """The file that holds one of `wordings`, and which. Raises LookupError unless it occurs exactly once."""

@@ -1,7 +1,7 @@
 """A fleet over weeks, made by the simulator under test/ that shares no code with the package: whose leak grows?
 
 One machine's piston seal leaks more from week to week, the other machine stays as it is; both are recorded with other
-motions and other noise every week. Then `pneumo fleet` is asked, which knows the default machine alone.
+motions and other noise every week. Then `pneumo fleet` runs, which knows only the default machine.
 
     python benchmarks/fleet_of_leaks.py [--seed 3]
 
@@ -40,7 +40,7 @@ def record(folder: Path, seed: int) -> None:
 
 
 def main() -> int:
-    """Record, ask, judge."""
+    """Record, run `pneumo fleet`, check its answer."""
     from pneumo_ros.command.main import main as pneumo
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

@@ -1,4 +1,4 @@
-"""Bad input for every parser: how many inputs were answered by a clear error, how many by a result, and what else.
+"""Bad input for every parser: how many inputs gave a clear error, how many a result, and how many broke something.
 
 Inputs are drawn by property-based testing: recordings, databases and texts with random damage, and grammars of files
 that are nearly right. A traceback, a message of more than 2000 characters, a warning of Python, 10 s of a processor,
@@ -81,7 +81,7 @@ def fuzz_one(job: tuple[int, int, int]) -> Row:
 
 
 def place(words: str) -> str:
-    """What tells one failure from another: its last lines."""
+    """What distinguishes one failure from another: its last lines."""
     return "\n    ".join(words.strip().splitlines()[-4:])
 
 

@@ -1,7 +1,7 @@
 """Finds pid_for_sine.yaml and cascade_for_sine.yaml: the search of `pneumo tune`, on the sine of the benchmark alone.
 
-`pneumo tune` looks for gains that suit moves and a harsher machine as well, and no law is at its best there. This says
-what PID and the cascade are worth at their best along the sine, on the very machine they know.
+`pneumo tune` looks for gains that suit moves and a harsher machine as well, so that its gains are not the best for this
+sine. Here PID and the cascade get the best gains for the sine, on exactly the machine of their file.
 
     python benchmarks/tune_for_sine.py
 """

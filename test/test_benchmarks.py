@@ -1,0 +1,28 @@
+"""What the benchmarks assume of the tree."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def rooms_below(room: str) -> set[str]:
+    """The room and all rooms that it imports, directly or not, by the table of CONTRIBUTING."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| .+ \| (.*) \|$", text, re.MULTILINE)
+    imports = {name: set(re.findall(r"\w+", imported)) for name, imported in rows}
+    found, new = set[str](), {room}
+    while new := new - found:
+        found |= new
+        new = {lower for name in new for lower in imports[name]}
+    return found
+
+
+def test_results_of_blind_cases_belong_to_all_the_code_that_a_diagnosis_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results are kept by a hash of the code: a room that is left out would give results of other code."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import blind_case
+
+    assert set(blind_case.JUDGED) == rooms_below("diagnose")
