@@ -1,6 +1,6 @@
-"""What must be installed, said in one sentence when it is not; and a ROS domain of one's own.
+"""Which packages must be installed, with advice for those that are missing; and a ROS domain for one process.
 
-Imports nothing but the standard library, so that it can speak when everything else is missing.
+Imports only the standard library, so that it can report when everything else is missing.
 """
 
 import importlib.util
@@ -42,15 +42,15 @@ LIBRARIES = {
 }
 OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
-DOMAINS = range(1, 102)  # higher ones run into ports the system hands out itself
+DOMAINS = range(1, 102)  # the ports of higher ones overlap those that the system assigns itself
 
 
 class MissingDependencyError(UsageError, ImportError):
-    """A package that is not installed; the message is one sentence with the command that helps."""
+    """A package that is not installed; the message is one sentence with the command that installs it."""
 
 
 def missing(modules: Iterable[str]) -> list[str]:
-    """Those of `modules` that Python cannot find. Nothing is imported."""
+    """The `modules` that Python cannot find. Nothing is imported."""
     return [name for name in modules if importlib.util.find_spec(name) is None]
 
 
@@ -80,7 +80,7 @@ def library_advice(absent: list[str]) -> str:
 
 
 def ros_advice(absent: list[str], python: tuple[int, int], distribution: str) -> str:
-    """One sentence: which part of ROS 2 is missing and how this Python gets it.
+    """One sentence: which part of ROS 2 is missing and how to install it for this Python.
 
     `python` is (major, minor), `distribution` the value of ROS_DISTRO, empty when none is sourced.
     """
@@ -105,11 +105,11 @@ def _listed(names: list[str]) -> str:
 
 
 class Domain:
-    """A ROS domain nobody else on this machine uses, held until `close`: number and the environment to start nodes in.
+    """A ROS domain that nothing else on this machine uses, reserved until `close`: its number and its environment.
 
-    Whoever asks this class holds a socket in Linux's abstract name space, which ends with its process. Nodes that were
-    started otherwise are recognised by the ports they listen on (RTPS 2.2, 9.6.1.1: one shared, two for each node's
-    process).
+    The reservation is a socket in Linux's abstract name space, which ends with the process. Nodes that were started
+    without this class are recognised by the ports they listen on (RTPS 2.2, 9.6.1.1: one shared, two for the process
+    of each node). Raises UsageError when all domains are in use.
     """
 
     def __init__(self, wanted: Iterable[int] = DOMAINS) -> None:
@@ -126,7 +126,7 @@ class Domain:
 
     @property
     def environment(self) -> dict[str, str]:
-        """Variables for nodes that only see each other: this domain, this machine, UDP."""
+        """Variables for nodes that see only each other: this domain, this machine, UDP."""
         return {
             "ROS_DOMAIN_ID": str(self.number),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -134,7 +134,7 @@ class Domain:
         }
 
     def close(self) -> None:
-        """Give the domain back."""
+        """Release the domain."""
         self._holder.close()
 
 

@@ -1,4 +1,4 @@
-"""What a user can be told: one class per exit code of the commands."""
+"""The errors that are reported to the user: one class for each exit code of the commands."""
 
 import reprlib
 
@@ -28,9 +28,9 @@ class NumericalError(PneumoError):
 
 
 _SHORT = reprlib.Repr()
-_SHORT.maxlevel = 2  # what a file holds may be long and deep
+_SHORT.maxlevel = 2  # the content of a file may be long and deeply nested
 
 
 def brief(value: object) -> str:
-    """What was given, for an error message: never more than a line."""
+    """A given value for an error message, shortened to one line."""
     return _SHORT.repr(value)

@@ -1,4 +1,4 @@
-"""Files and folders that appear whole or not at all."""
+"""Writes files and folders completely or not at all."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ from pneumo_ros.errors import DataError, UsageError
 
 
 def check_writable(path: str | Path) -> Path:
-    """`path` as a Path; UsageError when no file can be made there, so that long work is not done in vain."""
+    """`path` as a Path; UsageError when no file can be written there. Called before long work, which would be lost."""
     target = Path(path)
     folder = target.parent
     if not folder.is_dir():
@@ -24,19 +24,19 @@ def check_writable(path: str | Path) -> Path:
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
-    """Write `content` (text as UTF-8) to `path`, replacing a file there in one step: readers see the old or the new.
+    """Write `content` (text as UTF-8) to `path`, replacing a file in one step: readers see the old one or the new one.
 
-    Raises UsageError when no file can be made there, DataError when the disk is full or fails.
+    Raises UsageError when no file can be written there, DataError when the disk is full or fails.
     """
     target = check_writable(path).resolve()  # a link stays a link
     try:
         _write(target, content.encode("utf-8") if isinstance(content, str) else content)
     except OSError as error:
-        raise DataError(f"cannot write {path}: {error.strerror}; what was there is as it was") from error
+        raise DataError(f"cannot write {path}: {error.strerror}; the file there is unchanged") from error
 
 
 def _write(target: Path, data: bytes) -> None:
-    if target.exists() and not target.is_file():  # a device or pipe, such as /dev/null: nothing to replace
+    if target.exists() and not target.is_file():  # a device or pipe, such as /dev/null, cannot be replaced
         target.write_bytes(data)
         return
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
@@ -61,13 +61,13 @@ def check_new_folder(path: str | Path) -> Path:
 
 @contextmanager
 def whole_folder(path: str | Path) -> Iterator[Path]:
-    """A folder to make and fill, which becomes `path` when the block ends well and vanishes when it does not.
+    """Path of a folder to create and fill. It becomes `path` when the block ends without an error; else it is removed.
 
-    UsageError when `path` exists or cannot be made, DataError when the disk is full or fails.
+    Raises UsageError when `path` exists or cannot be created, DataError when the disk is full or fails.
     """
     target = check_new_folder(path)
     try:
-        # The folder keeps its name inside: some files in a recording are named after it.
+        # The folder has its final name inside a temporary one: some files in a recording are named after it.
         around = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
     except OSError as error:
         raise DataError(f"cannot write {path}: {error.strerror}") from error
@@ -81,7 +81,7 @@ def whole_folder(path: str | Path) -> Iterator[Path]:
 
 
 def yaml_number(value: float) -> str:
-    """Shortest text that both YAML 1.1 and ROS read back as the same double."""
+    """Shortest text that both YAML 1.1 and ROS read as the same double."""
     mantissa, e, exponent = repr(float(value)).partition("e")
     if "." not in mantissa:
         mantissa += ".0"
@@ -89,7 +89,7 @@ def yaml_number(value: float) -> str:
 
 
 def _usual_mode() -> int:
-    """The permissions a newly made file gets; temporary files are made readable by their owner alone."""
+    """The permissions that a new file gets by default; those of temporary files let only the owner read."""
     mask = os.umask(0)
     os.umask(mask)
     return 0o666 & ~mask

@@ -1,4 +1,4 @@
-"""The wording for a name nobody knows."""
+"""The message for an unknown name."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches

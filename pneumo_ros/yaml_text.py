@@ -1,4 +1,4 @@
-"""YAML from outside: its safe subset, within bounds of depth and length, and one kind of error whatever is wrong."""
+"""Untrusted YAML: only its safe subset, with limits of depth and length, and one error class for every problem."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,19 +7,19 @@ import yaml
 
 from pneumo_ros.errors import UsageError
 
-DEPTH = 64  # levels of lists and sections; Python would give up at some hundreds, in words of its own
-DIGITS = 400  # of a number: more is no double, and 1:59:59... takes time with the square of its length
+DEPTH = 64  # levels of lists and sections; at some hundreds Python raises an error that explains nothing to a user
+DIGITS = 400  # of a number: a double never has more, and 1:59:59... takes time that grows with its length squared
 
 
 def load_yaml(text: str) -> Any:
-    """What `text` holds: dictionaries, lists, text, numbers, dates. Nothing of it is ever run.
+    """The content of `text`: dictionaries, lists, text, numbers, dates. Nothing in it is run.
 
-    Raises UsageError, with the line, for what is no YAML, is nested deeper than DEPTH, gives a name twice, or names a
-    kind of object other than these.
+    Raises UsageError, with the line, for text that is no YAML, is nested deeper than DEPTH, gives a name twice, or
+    names another kind of object.
     """
     try:
         return yaml.load(text, _Loader)
-    except Exception as error:  # what a bad date or a set of lists raises is told as what it is: bad YAML
+    except Exception as error:  # also what a bad date or a set of lists raises: all of it is bad YAML
         place = getattr(error, "problem_mark", None)
         where = f" at line {place.line + 1}" if place else ""
         reason = str(getattr(error, "problem", None) or error).splitlines() or ["it is no YAML"]
@@ -27,7 +27,7 @@ def load_yaml(text: str) -> Any:
 
 
 class _Loader(yaml.SafeLoader):
-    """The safe loader, which would accept any depth, any length, and the last of a name given twice."""
+    """The safe loader with limits: by itself it accepts any depth, any length, and a name that is given twice."""
 
     _depth = 0
 
@@ -52,7 +52,7 @@ class _Loader(yaml.SafeLoader):
 
 
 def _within(construct: Callable[[yaml.SafeLoader, yaml.ScalarNode], Any]) -> Callable[[Any, Any], Any]:
-    """`construct` for numbers of no more than DIGITS digits."""
+    """`construct`, limited to numbers of at most DIGITS digits."""
 
     def number(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> Any:
         if len(node.value) > DIGITS:
