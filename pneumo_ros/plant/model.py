@@ -13,6 +13,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.compose import Composition, compose
 from pneumo_ros.plant.effect import Effect, Parameter
 from pneumo_ros.plant.kernels import load_kernel
+from pneumo_ros.plant.lacking import lacking, missing_parameters
 from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import FRAME, Library
 
@@ -51,7 +52,13 @@ class Model:
         repeated = sorted({n for n in names if names.count(n) > 1})
         if repeated:
             raise UsageError(f"effect {repeated[0]} is listed twice")
-        composition = compose((*(library.frame(f) for f in frame), *(library.find(n) for n in names)))
+        parts = (*(library.frame(f) for f in frame), *(library.find(n) for n in names))
+        try:
+            composition = compose(parts)
+        except UsageError as problem:
+            if sentence := lacking(parts, library):
+                raise UsageError(sentence) from problem
+            raise
         return cls(composition, _checked(composition, values, defaults), name, library)
 
     # --- what it is -------------------------------------------------------------------------------------------------
@@ -369,15 +376,12 @@ def _whole(voltages: int, parts: int) -> int:
 def _checked(composition: Composition, values: Mapping[str, object], defaults: bool) -> dict[str, float]:
     for dotted in values:
         composition.parameter(dotted)
+    absent = [dotted for dotted in composition.parameters if dotted not in values]
+    if absent and not defaults:
+        raise UsageError(missing_parameters(composition, absent))
     checked = {}
     for dotted in composition.parameters:
         specification = composition.parameter(dotted)
-        if dotted not in values and not defaults:
-            section, _, key = dotted.partition(".")
-            raise UsageError(
-                f"parameter {dotted} is missing; add '{key}: {specification.default!r}' to section '{section}' "
-                f"({specification.meaning} [{specification.unit}], {specification.range_text()})"
-            )
         checked[dotted] = specification.check(dotted, values.get(dotted, specification.default))
     return checked
 

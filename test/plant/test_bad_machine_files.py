@@ -22,6 +22,11 @@ def written(folder: Path, text: str | bytes) -> Path:
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{name}: &{name} [{', '.join(['*' + before] * 9)}]\n" for before, name in zip("abcdefgh", "bcdefghi", strict=True)
 )
+CHOKED_ALONE = """/**:
+  ros__parameters:
+    effects: [dead_zone, choked_flow]
+    chambers: {volume_a: 5.1e-4}
+"""
 BAD = {  # what is wrong: file, what the error says
     "unknown effect": (TEXT.replace("dead_zone", "deadzone"), r"unknown effect 'deadzone'; did you mean dead_zone"),
     "effect twice": (TEXT.replace("[dead_zone,", "[dead_zone, dead_zone,"), r"dead_zone is listed twice"),
@@ -30,11 +35,27 @@ BAD = {  # what is wrong: file, what the error says
     "unknown parameter": (TEXT.replace("mass:", "mas:"), r"unknown parameter 'piston.mas'; did you mean piston.mass"),
     "missing parameter": (
         TEXT.replace("      mass: 5.0  #", "      #"),
-        r"piston.mass is missing; add 'mass: 5.0' to section 'piston'",
+        r"parameter piston.mass is missing; add to the sections .*:\n    piston:\n      mass: 5.0  # \[kg\]",
+    ),
+    "missing parameters": (
+        TEXT.replace("      mass: 5.0  #", "      #").replace("      stiffness:", "      #"),
+        r"2 parameters are missing; add (?s:.*)piston:\n      mass: 5.0(?s:.*)end_stop:\n      stiffness: ",
     ),
     "missing section": (
         TEXT[: TEXT.index("    end_stop:")],
-        r"end_stop.stiffness is missing; add .* to section 'end_stop'",
+        r"2 parameters are missing; add (?s:.*)    end_stop:\n      stiffness: (?s:.*)\n      damping: ",
+    ),
+    "an effect without the one it works beside": (
+        TEXT.replace("[dead_zone, arctan_flow,", "[dead_zone, choked_flow,"),
+        r"unknown section 'arctan_flow'.*add it to 'effects' if you want it",
+    ),
+    "an effect without the one it works beside, nor its section": (
+        CHOKED_ALONE,
+        r"choked_flow works only beside effect arctan_flow, of which it reads filling_coefficient; add arctan_flow to",
+    ),
+    "an effect without the section it reads": (
+        "/**:\n  ros__parameters:\n    effects: [arctan_flow]\n    piston: {mass: 5.0}\n",
+        r"arctan_flow needs section 'chambers', of which it reads p_a; add section 'chambers' with volume_a, volume_b",
     ),
     "out of range": (TEXT.replace("mass: 5.0", "mass: -5.0"), r"piston.mass is -5.0 kg; allowed is 0.01 to 10000"),
     "not a number": (TEXT.replace("mass: 5.0", "mass: .nan"), r"piston.mass is nan kg"),

@@ -1,0 +1,77 @@
+"""What a machine file lacks, in words and with what to add: effects that others need, and parameters."""
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from pneumo_ros.files import yaml_number
+from pneumo_ros.plant.compose import Composition
+from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.signals import SIGNALS
+
+
+def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
+    """A sentence for the first effect that reads a state or parameter of an effect which is not among `effects`.
+
+    It names what is lacking and what to add. None when `library` knows no single effect that has what is read.
+    """
+    here = {effect.name for effect in effects}
+    known = {name for effect in effects for name in (*effect.states, *effect.parameters, *_written(effect))}
+    for effect in effects:
+        for name in _read(effect, known):
+            owner, _, key = name.rpartition("__")
+            owners = [owner] if owner else [one.name for one in _all(library) if key in (*one.states, *one.parameters)]
+            if len(owners) == 1 and owners[0] not in here and owners[0] in (*FRAME, *library.names()):
+                return _sentence(effect.name, key, _find(library, owners[0]))
+    return None
+
+
+def missing_parameters(composition: Composition, absent: Sequence[str]) -> str:
+    """Sentence for parameters that a machine file lacks, with the lines to add, by section, at their defaults."""
+    lines, section = list[str](), ""
+    for dotted in absent:
+        owner, _, key = dotted.partition(".")
+        one = composition.parameter(dotted)
+        if owner != section:
+            section = owner
+            lines.append(f"    {owner}:")
+        lines.append(f"      {key}: {yaml_number(one.default)}  # [{one.unit}] {one.meaning}, {one.range_text()}")
+    named = f"parameter {absent[0]} is" if len(absent) == 1 else f"{len(absent)} parameters are"
+    return "\n".join([f"{named} missing; add to the sections (values shown are defaults):", *lines])
+
+
+def _sentence(reader: str, key: str, needed: type[Effect]) -> str:
+    name = needed.name
+    section = f"section '{name}' with {', '.join(needed.parameters)}"
+    if name in FRAME:
+        without = " (a machine without chambers is driven by a measured force)" if name == "chambers" else ""
+        return f"effect {reader} needs section '{name}', of which it reads {key}; add {section}{without}"
+    also = f", and {section}" if needed.parameters else ""
+    return (
+        f"effect {reader} works only beside effect {name}, of which it reads {key}; add {name} to 'effects'{also}, or "
+        f"leave {reader} out"
+    )
+
+
+def _read(effect: type[Effect], known: set[str]) -> Iterator[str]:
+    """What an effect reads and no effect at hand has; of signals that nobody sets, what their defaults read."""
+    for function in effect.functions.values():
+        for name in function.reads:
+            if name in SIGNALS and name not in known:
+                tree = ast.parse(SIGNALS[name].default, mode="eval")
+                names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
+                yield from (one for one in names if one not in known and one not in SIGNALS)
+            elif name not in known:
+                yield name
+
+
+def _written(effect: type[Effect]) -> set[str]:
+    return {name for function in effect.functions.values() for name in function.writes}
+
+
+def _all(library: Library) -> Iterator[type[Effect]]:
+    yield from (_find(library, name) for name in (*FRAME, *library.names()))
+
+
+def _find(library: Library, name: str) -> type[Effect]:
+    return library.frame(name) if name in FRAME else library.find(name)
