@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.equations.breakaway import find_breakaways, holding_force
+from pneumo_ros.equations.breakaway import Breakaway, find_breakaways, holding_force
 
 STATIC = 100.0  # N, of the paper's machine
 
@@ -24,6 +24,12 @@ def test_slow_rises_tell_the_force_best() -> None:
     slow, fast = (find_breakaways(truth(), constant_run(volts))[0] for volts in (0.80, 7.0))
     assert slow.spread < 1.0 < 5.0 < fast.spread
     assert abs(slow.force - STATIC) < 1.0 < abs(fast.force - STATIC)
+
+
+def test_a_falling_force_is_as_uncertain_as_a_rising_one() -> None:
+    """0.2 N, and what the force changes in 20 ms until sliding shows."""
+    found = [Breakaway("run", 0, 0.0, 1, 100.0, ramp, 0.2, 1e-4) for ramp in (0.0, 50.0, -50.0)]
+    assert [one.spread for one in found] == pytest.approx([0.2, 1.2, 1.2])
 
 
 def test_time_is_where_sliding_is_certain() -> None:

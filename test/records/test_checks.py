@@ -8,8 +8,10 @@ from identify.making import recording
 
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.records import Recording
+from pneumo_ros.records.checks import gaps, outside_gaps
 from pneumo_ros.records.clocks import after_turns, jumps
 from pneumo_ros.records.corrections import PRESSURE_UNITS, WORDS, corrected, parse_words
+from pneumo_ros.records.series import Series
 from pneumo_ros.records.unfit import check_use
 
 N = 2000
@@ -58,6 +60,15 @@ def test_what_is_not_recorded_stays_so() -> None:
     mended = corrected(pushed, ("bar", "gauge", "reversed-position"), ATMOSPHERE)
     assert mended.pressure_a is mended.velocity is mended.voltage is None
     np.testing.assert_array_equal(mended.position, -SWING)
+
+
+@pytest.mark.parametrize(("steps", "warned"), [(4, False), (5, False), (6, True)])
+def test_a_gap_is_longer_than_five_sample_times(steps: int, warned: bool) -> None:
+    stamp = 1_000_000 * np.delete(np.arange(200), np.arange(100, 99 + steps))
+    series = Series("joint_states", stamp, stamp, {})
+    assert bool(gaps(series)) == warned
+    inside = Series("chamber_a/pressure", 1_000_000 * np.arange(200), 1_000_000 * np.arange(200), {})
+    assert len(outside_gaps(inside, [series])) == 200 - (steps - 1) * warned
 
 
 @pytest.mark.parametrize(

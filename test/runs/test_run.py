@@ -137,3 +137,9 @@ def test_positions_outside_the_stroke_are_refused() -> None:
         DataError, match=r"run: the position is 200 m at 1\.999 s, outside the stroke of axis, -1 to 1 m"
     ):
         check_position(load_model(), run)
+
+
+def test_a_stop_may_give_way_by_a_twentieth_of_the_half_stroke() -> None:
+    check_position(load_model(), make_run(valve_driven(position=np.linspace(0.0, 1.049, N))))
+    with pytest.raises(DataError, match=r"outside the stroke of axis"):
+        check_position(load_model(), make_run(valve_driven(position=np.linspace(0.0, 1.06, N))))
