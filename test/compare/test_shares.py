@@ -87,3 +87,8 @@ def test_masks_become_shares_of_windows() -> None:
     mask = (TIME >= 4.0).astype(float)
     shares = window_share(mask, DT, np.array([2.0, 4.0, 6.0, 9.999]), 0.1)
     assert shares == pytest.approx([0.0, 0.5, 1.0, 1.0], abs=0.01)
+
+
+def test_a_window_holds_as_many_samples_before_its_centre_as_after_it() -> None:
+    shares = window_share(np.arange(100.0), DT, DT * np.array([0.0, 50.0, 99.0]), 10 * DT)
+    assert shares == pytest.approx([2.5, 50.0, 96.5])

@@ -37,6 +37,13 @@ RELATIVE = relative(conditions(EVIDENCE), conditions(EVIDENCE))
 LAW = SIZE * SPEED / NOISE  # what the catalogue's law adds to each residual, in deviations
 
 
+def test_relative_conditions_have_no_mean() -> None:
+    """Neither the deviations nor their squares: a law that bends keeps its mean. A constant condition is left out."""
+    assert RELATIVE.shape == (N, 6)
+    np.testing.assert_allclose(RELATIVE.mean(axis=0), 0.0, atol=1e-12)
+    np.testing.assert_allclose(RELATIVE[:, :3].std(axis=0), 1.0)
+
+
 def left(machine: np.ndarray, free: bool) -> float:
     """Root mean square of what the model leaves of a machine whose friction is `machine`, noise and all."""
     residual = RNG.normal(size=N) + machine - LAW

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, acting, explained, gains, usual_gains
+from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, MOST_BLOCK, acting, explained, gains, together, usual_gains
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
 NOISE = np.random.default_rng(0).normal(size=N)
@@ -55,6 +55,14 @@ def test_one_wild_breakaway_says_nothing_against_the_others() -> None:
     assert gains(slips, before, after)["breakaway"] < -1.0
     assert usual_gains(slips, before, after)["breakaway"] > -0.1
     assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them do
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_one_block_alone_decides_nothing(sign: float) -> None:
+    """However much it says: three others that say the contrary outweigh it."""
+    saved, deviations = together(sign * np.array([1000.0, -1.0, -1.0, -1.0]))
+    assert saved == pytest.approx(sign * (MOST_BLOCK - 3.0))
+    assert abs(deviations) <= 1.0
 
 
 @pytest.mark.parametrize(("name", "least"), [("breakaway", 0.9), ("chamber_a 200 ms", 0.0)])

@@ -43,3 +43,10 @@ def test_heavy_pistons_take_longer_and_none_longer_than_a_rest() -> None:
 def test_the_direction_of_the_rise_does_not_matter() -> None:
     (found,) = find_breakaways(truth(), constant_run(1.0))
     assert slip_times(truth(), [replace(found, ramp=-found.ramp)]) == slip_times(truth(), [found])
+
+
+def test_a_payload_weighs_as_much_as_the_piston() -> None:
+    (found,) = find_breakaways(truth(), constant_run(1.0))
+    loaded = truth().with_effects([*truth().effects, "payload_mass"], {"payload_mass.mass_added": 3.0})
+    heavy = truth().with_parameters({"piston.mass": truth()["piston.mass"] + 3.0})
+    assert slip_times(loaded, [found]) == pytest.approx(slip_times(heavy, [found]))

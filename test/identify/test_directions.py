@@ -56,6 +56,14 @@ def test_directions_of_an_asymmetric_rig_differ() -> None:
     assert back - forth == pytest.approx(0.2 * 70.0, rel=0.1)
 
 
+def test_breakaways_count_for_their_own_direction() -> None:
+    """Those of one direction are left out: the other one has as many as before."""
+    right = tuple(one for one in campaign().breakaways if one.direction == 1)
+    assert 0 < len(right) < len(campaign().breakaways)
+    sides = by_direction(replace(campaign(), breakaways=right), (COULOMB,))
+    assert [sides[name]["breakaways"] for name in ("extending", "retracting")] == [len(right), 0]
+
+
 def test_a_direction_without_runs_has_its_sentence() -> None:
     sides = by_direction(identify(wrong(), constant_runs(0.83, 1.0, 7.0)), FRICTION[:4])
     assert "0 steady stretches are too few" in sides["retracting"]["problem"]

@@ -45,6 +45,18 @@ def test_stated_noise_is_the_scatter() -> None:
         assert np.std(found) == pytest.approx(1.0, abs=0.2), name
 
 
+def test_stated_noise_of_a_poor_position_sensor_is_the_scatter() -> None:
+    """A millimetre of noise: then the acceleration makes the noise of friction, and the pressures do not matter."""
+    exact = constant_run(1.0, noisy=False)
+    right, gaps = find_windows(truth(), exact), list[float]()
+    for seed in range(4):
+        poor = exact.position + 1e-3 * np.random.default_rng(seed).standard_normal(len(exact))
+        found = find_windows(truth(), replace(exact, position=poor))
+        gaps += [(one.friction - other.friction) / one.friction_noise for one, other in zip(found, right, strict=True)]
+    assert len(gaps) > 100
+    assert np.std(gaps) == pytest.approx(1.0, abs=0.2)
+
+
 def test_windows_stay_within_an_interval_of_constant_voltage() -> None:
     run = constant_run(1.0)
     windows = find_windows(truth(), run)
