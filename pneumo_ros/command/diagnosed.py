@@ -51,7 +51,9 @@ def _verdict(result: Mapping[str, Any]) -> str:
     names = listed([_with_rivals(one) for one in result["added"]]) if result["added"] else ""
     if result["verdict"] == "unknown_effect":
         besides = f"{names}, and besides " if names else ""
-        why = f": {_equation(left['equation'])} leaves {_left(result)}" if left else ""
+        reasons = [f"{_equation(left['equation'])} leaves {_left(result)}"] if left and left["material"] else []
+        why = "; ".join([*reasons, *([result["because"]] if result.get("because") else [])])
+        why = f": {why}" if why else ""
         return f"'{model}' lacks {besides}something that no effect at hand explains{why}."
     before = result["added"][0]["holdout_error_before"]
     way = "falls" if error < before else "goes"

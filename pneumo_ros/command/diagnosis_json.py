@@ -29,6 +29,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "model": outcome.model.name,
         "verdict": outcome.verdict,
         "interrupted": outcome.interrupted,
+        "because": outcome.because,
         "failing": list(outcome.failing),
         "added": [_added(one) for one in outcome.added],
         "candidates": [_candidate(one, outcome) for one in outcome.ranking],

@@ -7,24 +7,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.compare.compare import Comparison, EquationVerdict, compare
+from pneumo_ros.compare.compare import Comparison, compare
 from pneumo_ros.diagnose.between import moved_between
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Outcome, Ranked, Unexplained, Value
+from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.diagnose.prediction import HORIZON, typical_error
 from pneumo_ros.diagnose.search import Progress, Search
 from pneumo_ros.diagnose.steps import Found, Step
+from pneumo_ros.diagnose.verdict import excess, failing, material, missed, significant, verdict
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
-SIGNIFICANT = 1.3  # times the noise: more remains in an equation than noise and a coarse sum explain
-MATERIAL_FORCE = 0.007  # of the driving force: less is texture that no model has
-LARGE = 0.05  # of the force that drives the piston, or of the flow: no law's shape is that far off
-SHAPE_LEFT = 0.25  # of the mean square that the base left: less is the shape of an effect, not another one
 RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
 
 
@@ -63,12 +60,13 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         if step.added
     )
     before, after = comparisons[1], comparisons[len(models) - 1]
-    unexplained = remains(before, after)
+    unexplained, off = remains(before, after), missed(after)
     if unexplained is not None and unexplained.material:
         unexplained = replace(unexplained, moved=moved_between(search.fitter, found.model, unexplained.equation))
     return Outcome(
-        verdict=verdict(added, unexplained),
-        failing=failing(before, added, found.base),
+        verdict=verdict(added, unexplained, off),
+        failing=failing(before, after, added, found.base),
+        because=f"over {HORIZON:g} s, {'; '.join(one.sentence for one in off)}" if off else "",
         base=found.base,
         model=found.model,
         added=added,
@@ -136,25 +134,17 @@ def _ranked(c: Candidate) -> Ranked:
     return Ranked(c.name, c.hypothesis.t, c.gain[equation], equation, c.size, c.objections, None)
 
 
-def failing(before: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
-    """What fails in the refitted base: its equations, and the valve or the sensors where an added effect is theirs."""
-    found = [n for n, e in before.equations.items() if e.explained_by_noise is False and e.ratio_to_noise > SIGNIFICANT]
-    for addition in added:
-        module = model.library.find(addition.effect).__module__
-        for part in ("valve", "sensor"):
-            if f".{part}." in module and part not in found:
-                found.append(part)
-    return tuple(found)
-
-
 def remains(before: Comparison, after: Comparison) -> Unexplained | None:
-    """The equation that fails worst, over the variable that explains it best; None where nothing of size remains."""
-    worst, most = None, 1.0
-    for name, equation in after.equations.items():
-        if equation.explained_by_noise is False and excess(equation) > most:
-            worst, most = name, excess(equation)
-    shown = {n: d for n, d in after.dependences.get(worst or "", {}).items() if len(d.bins.centre)}
-    if worst is None or not shown:
+    """The worst of the equations that fail, or else leave more than noise, over the variable that explains it best.
+
+    None where noise explains what remains in all of them.
+    """
+    left = {n: e for n, e in after.equations.items() if significant(e)}
+    if not left:
+        return None
+    worst = max(left, key=lambda n: (material(n, before, after), excess(left[n])))
+    shown = {n: d for n, d in after.dependences.get(worst, {}).items() if len(d.bins.centre)}
+    if not shown:
         return None
     against, best = max(shown.items(), key=lambda item: item[1].explained_share)
     bins, equation = best.bins, after.equations[worst]
@@ -162,33 +152,3 @@ def remains(before: Comparison, after: Comparison) -> Unexplained | None:
         worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,
         equation.residual_rms, best.explained_share, material(worst, before, after),
     )  # fmt: skip
-
-
-def excess(equation: EquationVerdict) -> float:
-    """Mean square of a residual beyond the noise's, in units of what is significant: above 1 it is."""
-    return (equation.ratio_to_noise**2 - 1.0) / (SIGNIFICANT**2 - 1.0)
-
-
-def material(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether what remains matters: forces beyond 0.7 % of the drive, and much, or no small rest of what was there."""
-    first, last, whole = before.equations[name], after.equations[name], driving(after, name)
-    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
-        return False
-    return excess(last) > SHAPE_LEFT * excess(first) or last.residual_rms > LARGE * whole
-
-
-def driving(comparison: Comparison, equation: str) -> float:
-    """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
-    seen = [run.motion.seen for run in comparison.runs]
-    if equation == "momentum":
-        parts = [one["drive"] - one["force"] for one in seen]
-    else:
-        parts = [one[f"port_flow_{equation[-1]}"] for one in seen]
-    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
-
-
-def verdict(added: Sequence[Addition], unexplained: Unexplained | None) -> str:
-    """The one word for it."""
-    if unexplained is not None and unexplained.material:
-        return UNKNOWN
-    return FOUND if added else ADEQUATE

@@ -84,6 +84,7 @@ class Outcome:
     errors: dict[str, dict[str, float]]  # before, after, noise -> by signal, rms in its unit over all held-out windows
     waterfall: tuple[tuple[str, float], ...]  # name and error, in noise floors: as given, refitted, each addition
     unexplained: Unexplained | None
+    because: str = ""  # what fails in predictions of held-out runs, where the verdict is `unknown_effect` for that
     interrupted: bool = False
     train: tuple[str, ...] = ()
     held: tuple[str, ...] = ()

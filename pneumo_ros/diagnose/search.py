@@ -24,6 +24,7 @@ from pneumo_ros.diagnose.slips import polished, slips, with_values_of
 from pneumo_ros.diagnose.steps import Found, Step, without
 from pneumo_ros.diagnose.strain import followed
 from pneumo_ros.diagnose.timing import lateness, later
+from pneumo_ros.diagnose.verdict import rises
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
@@ -100,10 +101,26 @@ class Search:
             if last is not None and last.added is not None and pays(least, self.predicted(new)):
                 steps[-1:] = [last, replace(steps[-1], model=new)]
                 model = new
-            base, model = self.settled(base), self.settled(model)
+            return self.kept(self.settled(base), self.settled(model), steps)
         except KeyboardInterrupt:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             return Found(base, model, tuple(steps), interrupted=True)
+
+    def kept(self, base: Model, model: Model, steps: Sequence[Step]) -> Found:
+        """What was found, without the first addition with which predictions get worse and those after it.
+
+        A model on the way is settled as base and final model are where it would look worse for that alone.
+        """
+        steps, before = list(steps), self.predicted(base)
+        for k in (k for k, step in enumerate(steps) if step.added is not None):
+            final = not any(step.added for step in steps[k + 1 :])
+            if not final and rises(before, self.predicted(steps[k + 1].model)):
+                steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model))
+            after = self.predicted(model if final else steps[k + 1].model)
+            if rises(before, after):
+                last = without(steps[k], [step.added.name for step in steps[k:] if step.added], UNHELPFUL)
+                return Found(base, steps[k].model if k else base, (*steps[:k], last))
+            before = after
         return Found(base, model, tuple(steps))
 
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
@@ -207,11 +224,13 @@ class Search:
 
 
 def convinces(candidate: Candidate, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether predictions bear an effect out, or need not: its equation is explained, or the data do not say at all.
+    """Whether held-out predictions allow an effect: they never may get worse by it, and have to get better.
 
-    While something else is missing, predictions over a second may hang on that alone; but where the data do not say,
-    predictions may not get worse either.
+    They need not get better where it explains its equation: while something else is missing, predictions over a second
+    may depend on that alone. Nor need they where the data do not decide, if no signal is predicted worse.
     """
+    if rises(before, after):
+        return False
     return candidate.clear or pays(before, after) or (candidate.absorbed and harmless(before, after))
 
 

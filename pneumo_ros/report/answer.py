@@ -32,6 +32,9 @@ def verdict_sentence(outcome: "Outcome") -> str:
     if outcome.verdict == ADEQUATE:
         return f"Once its parameters are refitted, '{name}' lacks nothing of size that these recordings show."
     found = f"'{name}' lacks {listed([_with_rivals(one) for one in outcome.added])}. " if outcome.added else ""
+    if outcome.because:
+        off = f"No effect of the catalogue explains that, {outcome.because}."
+        return f"{found}{_remaining(outcome)} {off}" if outcome.unexplained else found + off
     return found + (_remaining(outcome) if outcome.unexplained else _fall(outcome))
 
 

@@ -58,7 +58,7 @@ def test_a_hidden_effect_is_found(
     assert found.parameters[key].value == pytest.approx(size, rel=0.05)
     assert abs(found.parameters[key].value - size) < 3.0 * found.parameters[key].std
     assert all(one.std > 0.9 * RULER * size for one in found.parameters.values())  # also of the chamber that is tight
-    assert outcome.waterfall[-1][1] < outcome.course[1][1]  # held-out error, in the end and of the refitted base
+    assert outcome.waterfall[-1][1] < outcome.waterfall[1][1]  # held-out error, in the end and of the refitted base
 
 
 def test_nothing_is_added_to_a_healthy_machine(tmp_path: Path) -> None:

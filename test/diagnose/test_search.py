@@ -98,11 +98,36 @@ def test_what_vanished_beside_another_does_not_come_back() -> None:
     assert UNHELPFUL not in {t.refused for step in found.steps for t in step.candidates}
 
 
-@pytest.mark.parametrize(("left", "added"), [(9.0, [STRIBECK]), (1.0, [STRIBECK, LOAD])])
-def test_what_only_mends_the_law_of_another_shape_that_was_added_is_no_effect(left: float, added: list[str]) -> None:
-    """A law that explains its equation but spoils predictions: who mends them has to leave less than without both."""
-    search = Played([STRIBECK], errors(base=6.0, stribeck=13.0, stribeck_load=left), slipping=LOAD)
+@pytest.mark.parametrize(("with_it", "added"), [(13.0, []), (6.01, []), (5.9, [STRIBECK])])
+def test_no_effect_is_kept_with_which_predictions_get_worse(with_it: float, added: list[str]) -> None:
+    """Not even one that explains its equation: held-out errors went from 270 to 476 noise floors with one."""
+    assert names(Played([STRIBECK], errors(base=6.0, stribeck=with_it))) == added
+
+
+@pytest.mark.parametrize(("left", "added"), [(5.8, [STRIBECK]), (1.0, [STRIBECK, LOAD])])
+def test_what_breakaways_ask_for_has_to_predict_better_than_every_model_before(left: float, added: list[str]) -> None:
+    search = Played([STRIBECK], errors(base=6.0, stribeck=5.9, stribeck_load=left), slipping=LOAD)
     assert names(search) == added
+
+
+def test_predictions_that_noise_explains_decide_nothing() -> None:
+    assert names(Played([STRIBECK], errors(base=1.05, stribeck=1.06))) == [STRIBECK]
+
+
+def test_an_addition_that_the_last_refit_makes_worse_is_taken_back_with_those_after_it() -> None:
+    class Settling(Played):
+        """Its last refits by prediction help the base, and nothing else."""
+
+        def settled(self, model: Model) -> Model:
+            return model.with_parameters({"piston.mass": 4.0}) if model.effects == BASE.effects else model
+
+    search = Settling([LOAD, DROOP], errors(base=10.0, load=5.0, load_droop=3.0))
+    whole = search.predicted
+    search.predicted = cast(Any, lambda model: {"position": 4.0} if model["piston.mass"] == 4.0 else whole(model))
+    found = search.run()
+    assert found.model.effects == BASE.effects
+    assert [step.added for step in found.steps] == [None]
+    assert {c.refused for c in found.steps[0].candidates if c.name == LOAD} == {UNHELPFUL}
 
 
 def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:

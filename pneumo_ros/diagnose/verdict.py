@@ -1,0 +1,129 @@
+"""The verdict of a diagnosis: what may be kept, what fails, and the one word for it.
+
+Three sentences hold for every diagnosis:
+
+1. No effect is kept with which held-out predictions get worse (`rises`).
+2. An equation fails if it leaves more than noise, of a size that matters (`fails`); predictions of a signal fail if
+   they are off by more than noise and by a twentieth of what the signal changes by within the horizon (`missed`).
+3. Where an equation or a prediction of the final model fails, the verdict is `unknown_effect`, whatever was added.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneumo_ros.compare.compare import Comparison
+from pneumo_ros.compare.verdicts import EquationVerdict
+from pneumo_ros.compare.wording import SIGNALS, amount, percent
+from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
+from pneumo_ros.diagnose.prediction import typical_error
+from pneumo_ros.plant import Model
+
+SIGNIFICANT = 1.3  # times the noise: more remains in an equation or a prediction than noise and coarse sums explain
+MATERIAL_FORCE = 0.007  # of the driving force: a smaller rest is a texture of friction that no model has
+LARGE = 0.05  # of the force that drives the piston, of the flow, or of what a signal changes by within the horizon
+SHAPE_LEFT = 0.25  # of the mean square that the base left: a smaller rest is an inexact law of an added effect
+
+
+@dataclass(frozen=True)
+class Missed:
+    """By how much predictions of one signal are off, in its unit, and what it changes by within the horizon."""
+
+    signal: str
+    error: float
+    change: float
+
+    @property
+    def sentence(self) -> str:
+        """In words, for text and report."""
+        off = f"{amount(self.error, self.signal)}, {percent(self.error / self.change)} of how much it changes"
+        return f"predictions of the {SIGNALS[self.signal][0]} on held-out recordings are off by {off} in that time"
+
+
+def rises(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether held-out predictions, errors over noise by signal, get worse; not where noise explains them both ways."""
+    return typical_error(after) > max(typical_error(before), SIGNIFICANT)
+
+
+def verdict(added: Sequence[Addition], unexplained: Unexplained | None, missed: Sequence[Missed]) -> str:
+    """The one word for a diagnosis."""
+    if missed or (unexplained is not None and unexplained.material):
+        return UNKNOWN
+    return FOUND if added else ADEQUATE
+
+
+def failing(before: Comparison, after: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
+    """What fails in the refitted base: its equations, and the valve or the sensors where an added effect is theirs.
+
+    An equation whose rest is too small to matter fails where what was added explains it.
+    """
+    found = [n for n in before.equations if fails(n, before, before) or (added and _mended(n, before, after))]
+    for addition in added:
+        module = model.library.find(addition.effect).__module__
+        for part in ("valve", "sensor"):
+            if f".{part}." in module and part not in found:
+                found.append(part)
+    return tuple(found)
+
+
+def fails(name: str, before: Comparison, after: Comparison) -> bool:
+    """Whether what an equation leaves is significant and material."""
+    return significant(after.equations[name]) and material(name, before, after)
+
+
+def significant(equation: EquationVerdict) -> bool:
+    """Whether more is left in an equation than noise explains."""
+    return equation.explained_by_noise is False and excess(equation) > 1.0
+
+
+def excess(equation: EquationVerdict) -> float:
+    """Mean square of a residual beyond the noise's, in units of what is significant: above 1 it is."""
+    return (equation.ratio_to_noise**2 - 1.0) / (SIGNIFICANT**2 - 1.0)
+
+
+def material(name: str, before: Comparison, after: Comparison) -> bool:
+    """Whether what remains matters: forces beyond 0.7 % of the drive, and much, or no small rest of what was there."""
+    first, last, whole = before.equations[name], after.equations[name], driving(after, name)
+    if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
+        return False
+    return excess(last) > SHAPE_LEFT * excess(first) or last.residual_rms > LARGE * whole
+
+
+def _mended(name: str, before: Comparison, after: Comparison) -> bool:
+    """Whether an equation that left more than noise leaves noise, or a quarter of its excess at most, afterwards."""
+    first, last = before.equations[name], after.equations[name]
+    return significant(first) and (not significant(last) or excess(last) <= SHAPE_LEFT * excess(first))
+
+
+def driving(comparison: Comparison, equation: str) -> float:
+    """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
+    seen = [run.motion.seen for run in comparison.runs]
+    if equation == "momentum":
+        parts = [one["drive"] - one["force"] for one in seen]
+    else:
+        parts = [one[f"port_flow_{equation[-1]}"] for one in seen]
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def missed(comparison: Comparison) -> tuple[Missed, ...]:
+    """The signals whose predictions fail, by their usual error: a few breakaways at the wrong moment decide nothing."""
+    found = []
+    for name in comparison.runs[0].error:
+        each = [run.error[name] for run in comparison.runs]
+        count = [run.windows for run in comparison.runs]
+        ratio = float(np.exp(np.average(np.log([e.typical for e in each]), weights=count)))
+        error = float(np.exp(np.average(np.log([e.typical * e.noise for e in each]), weights=count)))
+        change = _change(comparison, name)
+        if ratio > SIGNIFICANT and error > LARGE * change:
+            found.append(Missed(name, error, change))
+    return tuple(found)
+
+
+def _change(comparison: Comparison, name: str) -> float:
+    """Root mean square over all runs of what a measured signal changes by within the horizon, in its unit."""
+    changes = []
+    for run in (one.motion.run for one in comparison.runs):
+        signal, step = run.signals[name], round(comparison.horizon / run.sample_time)
+        changes.append(signal[step:] - signal[:-step] if 0 < step < len(signal) else signal[-1:] - signal[0])
+    return float(np.sqrt(np.mean(np.concatenate(changes) ** 2)))
