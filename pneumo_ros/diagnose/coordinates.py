@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.usual import usual_size
 
 Array = NDArray[np.float64]
 
 _FACTOR = 4.0  # between the shapes that are tried first
 _TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many either way: broad resonances overlap
 _FREQUENCY = ("Hz", "rad/s")
-_RANGE = 0.1  # of the allowed range: usual where nothing else tells
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
 _FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
 
@@ -124,11 +124,7 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     p = effect.parameters[key]
     typical = p.default
     if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: how much is usual?
-        like = [
-            abs(o.default - o.neutral) for o in effect.parameters.values() if o.neutral is not None and o.unit == p.unit
-        ]
-        span = _RANGE * (p.high - p.low) if np.isfinite(p.high - p.low) else 1.0
-        typical = p.neutral + (max(like, default=0.0) or span)
+        typical = p.neutral + usual_size(effect, key)
     return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit)
 
 

@@ -63,6 +63,7 @@ class Fitter:
                 continue
             if section in self.start.effects:
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))
+                size = size or self.start.usual_size(name)
                 middle, width, usual = self.start[name], BASE_PRIOR * size, USUAL * size
             else:
                 c = next(c for c in coordinates(model.library.find(section)) if c.name == name)

@@ -112,7 +112,9 @@ def _level(errors: Array) -> float:
 def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
     """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %.
 
-    Static friction at least half a per cent: by that much all breakaways may be off together, as slip times may be.
+    Of a value that is 0, 5 % of its default. Static friction at least half a per cent: by that much all breakaways may
+    be off together, as slip times may be.
     """
-    prior = {n: min(known.get(n, np.inf), 0.05 * alone[n]) for n in (f"lugre_friction.{key}" for key in FRICTION_KEYS)}
+    names = [f"lugre_friction.{key}" for key in FRICTION_KEYS]
+    prior = {n: min(known.get(n, np.inf), 0.05 * (alone[n] or alone.usual_size(n))) for n in names}
     return prior | {STATIC: max(prior[STATIC], COMMON * alone[STATIC])}

@@ -16,6 +16,7 @@ from pneumo_ros.plant.kernels import load_kernel
 from pneumo_ros.plant.lacking import lacking, missing_parameters
 from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.usual import usual_size
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # s, the default step
@@ -86,6 +87,12 @@ class Model:
     def specification(self, dotted: str) -> Parameter:
         """Unit, default, range and meaning of a parameter; UsageError with the nearest names."""
         return self.composition.parameter(dotted)
+
+    def usual_size(self, dotted: str) -> float:
+        """How far a parameter usually is from its neutral value, above 0; UsageError with the nearest names."""
+        self.specification(dotted)
+        section, _, key = dotted.partition(".")
+        return usual_size(next(e for e in self.composition.effects if e.name == section), key)
 
     def cautions(self) -> tuple[str, ...]:
         """Sentences on values that are allowed but unwise, such as friction that is not passive."""

@@ -98,22 +98,28 @@ def refit_segments(
 def default_prior(model: Model, name: str) -> float:
     """Standard deviation that a parameter has before any data: 5 % of its value, in the parameter's unit.
 
-    Of its default where that is larger; where an effect is switched off, all that would bring it to its default.
+    Of its default where that is larger, of its usual size where both are 0. Where an effect is switched off, all that
+    would bring it to its usual size.
     """
     specification, value = model.specification(name), model[name]
-    if value == specification.neutral and specification.default != value:
-        return abs(specification.default - value)
-    return PRIOR * max(abs(value), abs(specification.default))
+    size = max(abs(value), abs(specification.default))
+    if value == specification.neutral and (specification.default != value or size == 0.0):
+        return model.usual_size(name)
+    return PRIOR * (size or model.usual_size(name))
 
 
 def unknowns_of(
     model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None
 ) -> Unknowns:
-    """What a refit of the named parameters fits; otherwise as `refit`. UsageError for none, or priors of zero."""
+    """What a refit of the named parameters fits; otherwise as `refit`. UsageError for none, or priors of 0."""
     known = start.estimates if start else {}
     prior = [priors.get(n, known[n].prior if n in known else default_prior(model, n)) for n in names]
-    if not names or not all(p > 0.0 for p in prior):
-        raise UsageError("a refit needs at least one free parameter, and priors above zero")
+    if not names:
+        raise UsageError("a refit needs at least one free parameter; name one, or leave out the list for the default")
+    for name, width in zip(names, prior, strict=True):
+        if not width > 0.0:
+            unit = model.specification(name).unit
+            raise UsageError(f"the prior of {name} is {width:g} {unit}; a refit takes standard deviations above 0")
     specs = [model.specification(name) for name in names]
     return Unknowns(
         names=names,

@@ -52,3 +52,13 @@ def test_what_is_known_from_elsewhere_holds_a_refit_by_prediction(std: float | N
     found = polish(fitter(LEAKS), off, fitter(LEAKS).train.runs, 12, sure=sure).model
     moved = abs(found[STATIC] - off[STATIC])
     assert moved < 0.02 if std else moved > 0.5
+
+
+def test_parameters_of_the_model_that_are_zero_have_a_prior() -> None:
+    """A spring whose rest position is 0, as by default: a prior of 0 would divide by it."""
+    model, _, run = own("steps")
+    known = Fitter(model.with_effects([*model.effects, "spring_load"]), [run], [run], []).known(
+        model.with_effects([*model.effects, "spring_load"])
+    )
+    assert (known.prior > 0.0).all()
+    assert (known.step > 0.0).all()

@@ -37,3 +37,11 @@ def test_a_refit_that_came_far_is_begun_anew_where_it_ended(
     events = cast(slips.Slips, SimpleNamespace(train=lambda model: None))
     found = slips.polished(AXIS, events, {})
     assert found[STATIC] == pytest.approx(AXIS[STATIC] + rounds)
+
+
+def test_friction_of_zero_has_the_prior_of_its_default() -> None:
+    """A fit may drive static friction to 0, and a machine may have none."""
+    without = AXIS.with_parameters({STATIC: 0.0})
+    assert slips.friction_priors(without, {})[STATIC] == pytest.approx(5.0)
+    assert slips.friction_priors(without, {STATIC: 0.3})[STATIC] == 0.3
+    assert slips.friction_priors(AXIS, {STATIC: 0.1})[STATIC] == pytest.approx(0.5)

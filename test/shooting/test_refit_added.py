@@ -8,7 +8,7 @@ from identify.making import own, rig
 
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.shooting.refit import Refit, default_free, default_prior, refit
+from pneumo_ros.shooting.refit import Refit, default_free, default_prior, refit, unknowns_of
 from pneumo_ros.shooting.segments import cut
 
 VISCOUS, SPOOL = "viscous_friction", "valve_spool_dynamics"
@@ -81,6 +81,19 @@ def test_what_is_switched_off_may_come_to_its_usual_size() -> None:
     assert default_prior(model, f"{SPOOL}.angular_frequency") == 920.0
     assert default_prior(model, "dead_zone.right_slope") == 0.05  # neutral, and known: its default is the same
     assert default_prior(model.with_parameters({f"{VISCOUS}.coefficient": 200.0}), f"{VISCOUS}.coefficient") == 10.0
+
+
+def test_what_is_zero_by_default_has_a_prior() -> None:
+    """A rest position of a spring in a range of 20 m; knots, a share and a pressure that are neutral by default."""
+    model = load_model()
+    for name in ("spring_load", "position_dependent_friction", "heat_exchange", "line_delay", "stribeck_shape"):
+        model = with_effect(model, name)
+    assert all(default_prior(model, name) > 0.0 for name in model.parameters)
+    assert default_prior(model, "spring_load.rest_position") == pytest.approx(0.1)
+    assert default_prior(model, "position_dependent_friction.knot_00") == model["position_dependent_friction.knot_12"]
+    assert default_prior(model, "line_delay.loss_pressure") == 1e4
+    refitted = unknowns_of(model, default_free(model), {})
+    assert len(refitted.prior) == len(default_free(model))
 
 
 def slow_spool(omega: float) -> Run:

@@ -1,0 +1,23 @@
+"""How large a parameter usually is, where its value says nothing because it is 0 or switches the effect off."""
+
+import math
+
+from pneumo_ros.plant.effect import Effect
+
+RANGE_SHARE = 0.1  # of the allowed range: usual where nothing else says more
+
+
+def usual_size(effect: type[Effect], key: str) -> float:
+    """How far a parameter of `effect` usually is from its neutral value (from 0, if it has none), in its unit.
+
+    That of its default; where the default does nothing, the largest of the effect's sizes in the same unit, or a tenth
+    of the allowed range (1 where that has no end). Always above 0.
+    """
+    own = effect.parameters[key]
+    size = abs(own.default - (own.neutral or 0.0))
+    if size > 0.0:
+        return size
+    others = [one for one in effect.parameters.values() if one.neutral is not None and one.unit == own.unit]
+    alike = max((abs(one.default - (one.neutral or 0.0)) for one in others), default=0.0)
+    span = RANGE_SHARE * (own.high - own.low)
+    return (alike if own.neutral is not None else 0.0) or (span if math.isfinite(span) and span > 0.0 else 1.0)
