@@ -24,6 +24,7 @@ from rclpy.parameter import Parameter
 from pneumo_ros.errors import UsageError
 from pneumo_ros.ros.diagnostics import Diagnostics, Health
 from pneumo_ros.ros.parameters import Parameters
+from pneumo_ros.ros.rivals import Rivals
 from pneumo_ros.ros.setting import Setting
 
 
@@ -45,11 +46,19 @@ class AxisNode(Node):
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.parameters = Parameters(self)
         self.parameters.declare(settings)
-        self.diagnostics = Diagnostics(self, self.health)
+        self.rivals: Rivals | None = None  # of a node whose role only one node in a namespace can have
+        self.diagnostics = Diagnostics(self, self._whole_health)
 
     def health(self) -> Health:
         """What /diagnostics says about this node."""
         return Health()
+
+    def _whole_health(self) -> Health:
+        health = self.health()
+        if self.rivals is not None:
+            health.errors += self.rivals.errors
+            health.warnings += self.rivals.warnings
+        return health
 
     def start(self) -> None:
         """Called once, when callbacks are being served."""

@@ -106,6 +106,8 @@ def _live(make: Callable[[], Sequence[AxisNode]]) -> None:
             for node in nodes:
                 node.end = STOP.set
                 node.start()
+                if node.failure is not None:  # a callback has failed before `end` was known
+                    node.end()
             STOP.wait()
             for node in nodes:
                 node.finish()

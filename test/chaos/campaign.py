@@ -95,6 +95,7 @@ def campaign(
                     name, at = waiting.pop(0), time.monotonic()
                     counts[name] += 1
                     faults[name](field)
+                    field.probe.withdraw()  # beside its publishers no controller and no simulator starts
                     field.answers()
                     longest[name] = max(longest[name], time.monotonic() - at)
                     told(f"{sum(counts.values())}/{count} {name}: {time.monotonic() - at:.1f} s")

@@ -124,6 +124,12 @@ class Probe:
             self._publishers[topic] = self.node.create_publisher(Float64, topic, 10)
         return self._publishers[topic]
 
+    def withdraw(self) -> None:
+        """End all publishers; the next use makes them again."""
+        for publisher in self._publishers.values():
+            self.node.destroy_publisher(publisher)
+        self._publishers.clear()
+
     # --- acting -----------------------------------------------------------------------------------------------------
 
     def send(self, voltage: float, seconds: float = 0.0) -> None:

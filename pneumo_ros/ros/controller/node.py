@@ -34,6 +34,7 @@ from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.parameters import Values
 from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
+from pneumo_ros.ros.rivals import CONTROLLER, Rivals
 
 CHECK = 0.02  # s between looks for silence
 
@@ -46,9 +47,11 @@ class Controller(AxisNode):
     ) -> None:
         """`clock` [ns] tells how long measurements stay away; None: simulated time if used, else the steady clock.
 
-        Raises UsageError for an unknown parameter, unless it is `tolerated` or a machine file's, or a bad value.
+        Raises UsageError for an unknown parameter, unless it is `tolerated` or a machine file's, for a bad value, and
+        where there is another controller.
         """
         super().__init__("controller", SETTINGS)
+        self.rivals = Rivals(self, CONTROLLER)
         values = self.parameters
         values.update(absent(values.begun_with))
         foreign = of_a_machine_file(values.begun_with)
@@ -64,6 +67,7 @@ class Controller(AxisNode):
         self._stamp = 0  # of the last measurement
         self._stale = self._finished = False
         self._sending = threading.Lock()
+        self.rivals.settle()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
         self._setpoints = Setpoints(self, self._joint)
         self._listen()

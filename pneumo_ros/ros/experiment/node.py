@@ -10,7 +10,7 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from pneumo_ros.errors import DataError, PneumoError
+from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.experiment.conductor import Conductor
 from pneumo_ros.experiment.programme_file import programme_text
 from pneumo_ros.experiment.summary import recorded, summary
@@ -27,6 +27,7 @@ from pneumo_ros.ros.experiment.tellers import Teller
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
+from pneumo_ros.ros.rivals import CONTROLLER, Rivals
 
 CHECK = 0.1  # s between two looks after the plant, at most
 SIMULATED = 1_000_000_000  # ns between stamps and the wall's time that only another clock explains
@@ -44,6 +45,7 @@ class Experiment(AxisNode):
     def __init__(self, effects_files: Iterable[str | Path] = ()) -> None:
         """Raises UsageError for a bad parameter or programme, DataError for a programme that cannot be read."""
         super().__init__("experiment", SETTINGS)
+        self.rivals = Rivals(self, CONTROLLER)
         values = self.parameters
         values.refuse_unknown()
         self.programme, self.folder = prepare(values, tuple(effects_files))
@@ -53,16 +55,12 @@ class Experiment(AxisNode):
         self._begun = self._over = False
         self._origin = self._stamp = 0
         self._started = self._heard = time.monotonic()
+        self.rivals.settle()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
         self._takes = Takes(self, self.folder, self._give_up)
         self._plant = Plant(self, self._takes.heard, self._publisher)
         self.create_subscription(JointState, JOINT_STATES, self._joint_states, SUBSCRIBE, raw=True)
         self.create_timer(min(CHECK, 0.25 * values["measurement_timeout"]), self._check, clock=self.steady_clock)
-
-    def start(self) -> None:
-        """End at once if something was wrong before anybody listened."""
-        if self.failure is not None:
-            self.end()
 
     # --- measurement in, voltage out ----------------------------------------------------------------------------------
 
@@ -124,12 +122,15 @@ class Experiment(AxisNode):
         silent = self._plant.silent(timeout, self._heard)
         if silent:
             self._give_up(AbortedError(f"no {silent} for {timeout:g} s: what the plant does is not known any more"))
-        elif rivals := self._plant.rivals():
-            self._give_up(AbortedError(f"{rivals} has begun to send {COMMAND}, too"))
+        elif self.rivals.others:
+            self._give_up(AbortedError(f"{self.rivals.others} has begun to send {COMMAND}, too"))
 
     def _begin_when_complete(self) -> None:
         missing = self._plant.missing(self._stamp > 0)
-        if not missing:
+        self.rivals.look()
+        if self.rivals.others:
+            self._give_up(UsageError(f"{self.rivals.others} sends {self._publisher.topic_name}, too; stop it first"))
+        elif not missing:
             away = abs(self._stamp - time.time_ns()) > SIMULATED
             self._takes.simulated = away and self.count_publishers("/clock") > 0
             if not self._takes.simulated:  # beside nodes that have it, commands would come late

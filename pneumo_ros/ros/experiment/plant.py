@@ -1,4 +1,4 @@
-"""The plant as its topics show it: what is missing of it, what has fallen silent, who else commands it."""
+"""The plant as its topics show it: what is missing of it, and what has fallen silent."""
 
 import time
 from collections.abc import Mapping
@@ -9,7 +9,6 @@ from rclpy.publisher import Publisher
 from pneumo_ros.records.contract import JOINT_STATES, PRESSURE_A, PRESSURE_B
 
 PRESSURES = (PRESSURE_A, PRESSURE_B)
-SEEK = 1.0  # s between two looks for others who send commands
 
 
 class Plant:
@@ -19,7 +18,6 @@ class Plant:
         """`heard`: when each of the contract's topics was last heard [s, monotonic]; `commands` drives the valve."""
         self.other_joints: list[str] = []  # those of joint states without the joint that is wanted
         self._node, self._heard, self._commands = node, heard, commands
-        self._sought = 0.0
 
     def missing(self, placed: bool) -> str:
         """A sentence on what is not there, empty when the plant is complete; `placed`: positions have come."""
@@ -30,8 +28,6 @@ class Plant:
             return f"no message on {' and '.join(silent)}: without both pressures the recordings would be of no use"
         if not self._commands.get_subscription_count():
             return f"nobody listens on {self._commands.topic_name}: start the simulator, or the driver of the valve"
-        if rivals := self._others():
-            return f"{rivals} sends {self._commands.topic_name}, too; stop it first"
         return ""
 
     def silent(self, timeout: float, placed: float) -> str:
@@ -40,19 +36,6 @@ class Plant:
         if now - placed > timeout:
             return f"new {JOINT_STATES}"
         return next((name for name in PRESSURES if now - self._heard[name] > timeout), "")
-
-    def rivals(self) -> str:
-        """Who else sends commands, looked for once a second."""
-        if time.monotonic() - self._sought < SEEK:
-            return ""
-        self._sought = time.monotonic()
-        return self._others()
-
-    def _others(self) -> str:
-        offered = self._node.get_publishers_info_by_topic(self._commands.topic_name)
-        ours = self._node.get_name(), self._node.get_namespace()
-        names = {(one.node_name, one.node_namespace) for one in offered} - {ours}
-        return " and ".join(sorted(f"{space.rstrip('/')}/{name}" for name, space in names))
 
     def _no_joint(self) -> str:
         topic = self._node.resolve_topic_name(JOINT_STATES)

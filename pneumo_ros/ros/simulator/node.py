@@ -16,6 +16,7 @@ from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.peers import loop_closed
 from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import SUBSCRIBE
+from pneumo_ros.ros.rivals import PLANT, Rivals
 from pneumo_ros.ros.simulator.health import Monitor
 from pneumo_ros.ros.simulator.lockstep import Lockstep
 from pneumo_ros.ros.simulator.machine import machine_from_parameters
@@ -36,13 +37,17 @@ class Simulator(AxisNode):
     def __init__(
         self, effects_files: Iterable[str | Path] = (), tolerated: Callable[[str], bool] = lambda name: False
     ) -> None:
-        """Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, or a bad value."""
+        """Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, for a bad value, and where
+        there is another plant.
+        """
         super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it makes that time itself
+        self.rivals = Rivals(self, PLANT)
         files = tuple(effects_files)
         self.lock = threading.Lock()
         self.paused = self.parameters["start_paused"]
         self.fault: str | None = None
         self.simulation = self._build(files, tolerated)
+        self.rivals.settle()
         self._simulated_time = self.parameters["publish_clock"] or self.parameters["real_time_factor"] != 1.0
         self.outlet = Outlet(self, self.parameters["joint_name"], self._simulated_time)
         self._stamps = WallStamps()
