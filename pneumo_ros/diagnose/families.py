@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.follow import Frame, follow
-from pneumo_ros.diagnose.slip_time import force_spread, slip_times
-from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
+from pneumo_ros.diagnose.slip_time import UNSURE, slip_times
+from pneumo_ros.equations.breakaway import Breakaway, find_breakaways, force_spread
 from pneumo_ros.equations.bump import Bump
 from pneumo_ros.equations.equations import Chamber, Momentum, measured_throughout
 from pneumo_ros.plant import Model
@@ -60,7 +60,7 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
             found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
     breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
     late = slip_times(model, breakaways)
-    spread = np.array([force_spread(b, seconds) for b, seconds in zip(breakaways, late, strict=True)])
+    spread = np.array([force_spread(b.ramp, UNSURE * seconds) for b, seconds in zip(breakaways, late, strict=True)])
     time = np.array([b.time for b in breakaways])
     found.append(Family("breakaway", 0.0, index, time, spread, np.ones(len(time), dtype=bool), None, breakaways, late))
     return found

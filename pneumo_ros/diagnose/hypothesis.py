@@ -4,20 +4,19 @@ All hypotheses share one model that holds every candidate at its neutral setting
 one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
 """
 
-import contextlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear
 from scipy.sparse import csr_array
 
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.errors import NumericalError, PneumoError
+from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
+from pneumo_ros.shooting.bounded import bounded_minimum, finite
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
 
 Array = NDArray[np.float64]
@@ -164,34 +163,22 @@ def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Ar
 
     Raises NumericalError when the derivatives leave the finite numbers, or differ too much in size.
     """
-    A = K * w[:, None]
-    bread = _checked(np.linalg.inv, A, ridge)
+    A, normal = _normal(K, w, ridge)
+    bread = finite(np.linalg.inv, normal)
     return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
 
 
 def solve_within(K: Array, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
-    """The step of `solve` that is best within low and high (p,).
+    """The step of `solve` that is best within low and high (p,). Raises NumericalError as `solve`."""
+    A, normal = _normal(K, w, ridge)
+    return bounded_minimum(normal, A.T @ (w * r) + ridge * offset, low, high)
 
-    One cut off at the end of its range would leave what trades with it where it does not belong. Raises NumericalError
-    as `solve`.
-    """
+
+def _normal(K: Array, w: Array, ridge: Array) -> tuple[Array, Array]:
+    """Weighted slopes A (residuals, p) and A^T A + diag(ridge)."""
     A = K * w[:, None]
-    root = _checked(np.linalg.cholesky, A, ridge).T
-    wanted = -np.linalg.solve(root.T, A.T @ (w * r) + ridge * offset)
-    return np.asarray(np.clip(lsq_linear(root, wanted, (low, high), method="bvls").x, low, high))
-
-
-def _checked(function: Callable[..., Array], A: Array, ridge: Array) -> Array:
-    """`function` of the normal matrix A^T A + diag(ridge); NumericalError where matrix or result are not finite."""
-    with np.errstate(invalid="ignore", over="ignore"), contextlib.suppress(np.linalg.LinAlgError):
-        normal = A.T @ A + np.diag(ridge)
-        result = np.asarray(function(normal))
-        if np.isfinite(normal).all() and np.isfinite(result).all():
-            return result
-    raise NumericalError(
-        f"a fit of {len(ridge)} parameters left the finite numbers: a small change of one of them changes the "
-        "simulation without bound; check the values of the machine file, and the equations of your own effects"
-    )
+    with np.errstate(invalid="ignore", over="ignore"):
+        return A, A.T @ A + np.diag(ridge)
 
 
 def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:

@@ -34,8 +34,3 @@ def slip_times(model: Model, breakaways: Sequence[Breakaway]) -> tuple[float, ..
         return t
 
     return tuple(map(slides, breakaways))
-
-
-def force_spread(breakaway: Breakaway, time: float) -> float:
-    """How far the force where sliding begins may be off [N]: a fifth of a newton, and its rise in what `time` errs."""
-    return 0.2 + UNSURE * time * abs(breakaway.ramp)

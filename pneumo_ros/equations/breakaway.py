@@ -11,6 +11,7 @@ from pneumo_ros.runs.smooth import smooth
 
 Array = NDArray[np.float64]
 
+SCATTER, UNSEEN = 0.2, 0.02  # N between breakaways under a slow force; s until sliding shows
 REST = 0.15  # s at rest before it counts as a breakaway
 _EDGE = 2e-3  # m from the end of the stroke
 _CHUNK = 2000  # samples looked through at a time
@@ -32,8 +33,17 @@ class Breakaway:
 
     @property
     def spread(self) -> float:
-        """How far the force may be off [N]: a fifth of a newton, and 20 ms of its rise until sliding shows."""
-        return 0.2 + 0.02 * abs(self.ramp)
+        """How far the force may be off [N], where nobody has worked out how long the slip took to show."""
+        return float(force_spread(self.ramp))
+
+
+def force_spread(ramp: float | Array, unsure: float = UNSEEN) -> float | Array:
+    """How far the force at a breakaway may be off [N]: a fifth of a newton, and its rise `ramp` [N/s] while unseen.
+
+    The one noise model of breakaways, of identification, diagnosis and planning. `unsure` [s]: by how much the moment
+    at which sliding began is uncertain.
+    """
+    return SCATTER + unsure * np.abs(ramp)
 
 
 def find_breakaways(model: Model, run: Run) -> list[Breakaway]:

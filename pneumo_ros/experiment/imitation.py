@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear
 
 from pneumo_ros.experiment.whitened import Whitened
 from pneumo_ros.plant import Model
+from pneumo_ros.shooting.bounded import bounded_minimum
 from pneumo_ros.shooting.refit import PRIOR, default_free
 
 Array = NDArray[np.float64]
@@ -117,7 +117,6 @@ def _differentiate(jacobian: Array, phi: Array, r: Array, residual: Residual, fr
 
 def _move(phi: Array, r: Array, jacobian: Array, free: Unknowns) -> Array:
     """The step of least squares within the bounds."""
-    root = np.linalg.cholesky(jacobian.T @ jacobian + np.eye(len(phi))).T
-    wanted = -np.linalg.solve(root.T, jacobian.T @ r + (phi - free.start) / free.prior)
-    bounds = ((free.low - phi) / free.prior - 1e-12, (free.high - phi) / free.prior + 1e-12)
-    return np.asarray(lsq_linear(root, wanted, bounds).x * free.prior)
+    low, high = (free.low - phi) / free.prior - 1e-12, (free.high - phi) / free.prior + 1e-12
+    gradient = jacobian.T @ r + (phi - free.start) / free.prior
+    return bounded_minimum(jacobian.T @ jacobian + np.eye(len(phi)), gradient, low, high) * free.prior

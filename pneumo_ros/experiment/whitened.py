@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.equations.breakaway import UNSEEN, force_spread
 from pneumo_ros.experiment.record import INTERVAL, Mask, Record
 from pneumo_ros.plant import Model
 
@@ -20,8 +21,6 @@ Array = NDArray[np.float64]
 
 FAMILIES = ("momentum while sliding", "pressure in chamber a", "pressure in chamber b", "force at breakaway")
 NOISE_RATE = 1000.0  # Hz, of the recordings whose noise is given
-BREAKAWAY = 0.7  # N: scatter of the force at which real pistons slip
-_RAMP = 0.02  # s until a slip shows: what the force rises in it adds to the scatter
 _STEP = 2e-3  # s, of the integration along the motion
 _SLIDE_SAMPLES, _HOLD_SAMPLES = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
 _TINY = 1e-9  # m/s, velocity of a piston about to slip
@@ -138,8 +137,8 @@ class Whitened:
     def _scatter_of_breakaways(self, model: Model) -> Array:
         at = self.record.breakaways[self._events]
         drive = model["piston.area_a"] * self.record.frame[:, 2] - model["piston.area_b"] * self.record.frame[:, 3]
-        before = np.maximum(at - round(_RAMP / INTERVAL), 0)
-        return np.hypot(BREAKAWAY, drive[at] - drive[before])
+        before = np.maximum(at - round(UNSEEN / INTERVAL), 0)
+        return np.asarray(force_spread((drive[at] - drive[before]) / UNSEEN))
 
 
 def _alters_signals(model: Model) -> bool:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.diagnose.slip_time import force_spread, slip_times
-from pneumo_ros.equations.breakaway import find_breakaways, holding_force
+from pneumo_ros.diagnose.slip_time import UNSURE, slip_times
+from pneumo_ros.equations.breakaway import find_breakaways, force_spread, holding_force
 
 STATIC = 100.0  # N, of the paper's machine
 
@@ -19,8 +19,8 @@ def test_it_is_what_the_plant_takes(volts: float) -> None:
     (found,) = find_breakaways(model, run)
     (seconds,) = slip_times(model, [found])
     force = found.direction * holding_force(model, run)[found.index - round(seconds / run.sample_time)]
-    assert abs(force - STATIC) < 2.0 * force_spread(found, seconds)
-    assert force_spread(found, seconds) < 0.3 * found.spread
+    assert abs(force - STATIC) < 2.0 * force_spread(found.ramp, UNSURE * seconds)
+    assert force_spread(found.ramp, UNSURE * seconds) < 0.3 * found.spread
 
 
 def test_without_a_stribeck_curve_the_force_alone_accelerates_it() -> None:
