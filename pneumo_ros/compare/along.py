@@ -13,7 +13,7 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
 Array = NDArray[np.float64]
 
 _SLOWEST = 1e-3  # m/s: slower counts as rest however good the sensor is
-_DEVIATIONS = 4.0  # of the estimated velocity: below, motion cannot be told from noise
+_DEVIATIONS = 4.0  # of the estimated velocity: below, motion cannot be distinguished from noise
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Along:
 
     run: Run
     velocity: Array  # local polynomials over +-12 ms
-    rest_below: float  # m/s: slower cannot be told from rest
+    rest_below: float  # m/s: slower cannot be distinguished from rest
     input: Array  # V, or N when force-driven: in force from each sample on
     seen: dict[str, Array]  # what `Model.outputs` shows along the measured states
     reach: float  # m, half the stroke

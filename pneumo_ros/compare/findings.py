@@ -9,7 +9,7 @@ from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, VARIABLES, a
 Level = Literal["good", "bad", "open"]
 
 _FOLLOWS = 0.1  # share of the squared residual from which on a variable or a constant is worth naming
-_TIED = 0.8  # of the best share: variables this close cannot be told apart here
+_TIED = 0.8  # of the best share: variables this close cannot be distinguished here
 _OFTEN = 0.1  # share of the error from which on a regime is worth naming
 
 
@@ -76,11 +76,11 @@ def _where(name: str, found: Mapping[str, Any]) -> Iterator[str]:
     other = ("filling_a", "exhausting_a") if "_b" in name else ("filling_b", "exhausting_b")
     shares = {n: s for n, s in found["regimes"].items() if s["share"] >= _OFTEN and n in REGIMES and n not in other}
     dense = sorted(shares, key=lambda n: -shares[n]["share"] * shares[n]["share"] / shares[n]["time_share"])
-    told = [n for n in dense if shares[n]["share"] > 1.2 * shares[n]["time_share"]][:2]
-    if told:
+    dense_first = [n for n in dense if shares[n]["share"] > 1.2 * shares[n]["time_share"]][:2]
+    if dense_first:
         parts = (
             f"{percent(shares[n]['share'])} in '{REGIMES[n]}' ({percent(shares[n]['time_share'])} of the time)"
-            for n in told
+            for n in dense_first
         )
         yield "where: " + ", ".join(parts)
     else:

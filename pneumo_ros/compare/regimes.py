@@ -20,7 +20,7 @@ NEAR_NULL = 0.1  # V of opening beyond the dead zone
 NO_FLOW = 0.02  # of the run's largest flow
 
 MEANING = {
-    "stick": "the piston rests: its velocity cannot be told from zero for 20 ms or longer",
+    "stick": "the piston rests: its velocity cannot be distinguished from zero for 20 ms or longer",
     "breakaway": "from 20 ms before to 100 ms after a rest ends",
     "slide": "the piston moves: all that is not stick",
     "reversal": "50 ms around a change of direction with less than 0.2 s of rest in it",

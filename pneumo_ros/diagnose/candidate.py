@@ -1,4 +1,4 @@
-"""What speaks for a candidate and what against: everything that has to hold before an effect is added."""
+"""The evidence for and against a candidate: every condition that must hold before an effect is added."""
 
 from dataclasses import dataclass, field
 
@@ -45,7 +45,7 @@ class Candidate:
     force: float = np.inf  # N, root mean square of what it changes in the momentum equation, over TEXTURE of the drive
     rest: float = 1.0  # excess over noise in the equation it helps most, of what the refitted model left there at first
     lag: float = np.inf  # samples, of an effect that delays
-    quiet: bool = True  # whether no force of size is unexplained: else base parameters may be strained by that
+    quiet: bool = True  # whether no significant force is unexplained, which would strain base parameters, too
     refused: str = ""  # why it was taken back after it had been added
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
     elsewhere: frozenset[str] = frozenset()  # equations that it does not enter
@@ -69,7 +69,7 @@ class Candidate:
 
     @property
     def absorbed(self) -> bool:
-        """Whether base parameters stand in for it: the data do not say, but what is known of those parameters does."""
+        """Whether base parameters replace it: the data do not decide, but what is known of those parameters does."""
         h = self.hypothesis
         indifferent = all(gain > -GAIN_LEAST for gain in self.gain.values())
         return self.quiet and indifferent and h.relief > RELIEF and h.t > T_PRIOR and self.score > RELIEF
@@ -78,31 +78,32 @@ class Candidate:
         """What the recordings say against it."""
         h, found, most = self.hypothesis, list[str](), max(self.local, *self.gain.values())
         if h.t < T_LEAST:
-            found.append(f"t is {h.t:.1f}, {T_LEAST:g} is the least")
+            found.append(f"its t is {h.t:.1f}, below {T_LEAST:g}")
         elif h.t < 1.5 * self.decoy and self.share < PLAIN:
-            found.append(f"t is {h.t:.1f}, and its trace shifted in time reaches {self.decoy:.1f}")
+            found.append(f"its t is {h.t:.1f}, and copies of it shifted in time reach {self.decoy:.1f}")
         if most < GAIN_LEAST:
-            found.append(f"removes {100.0 * most:.1f} % on held-out runs")
+            found.append(f"removes only {100.0 * most:.1f} % of the misfit of held-out runs")
         elif self.z < Z_LEAST:
-            found.append("its gain on held-out runs is within their scatter")
+            found.append("what it improves on held-out runs is within their scatter")
         # what explains an equation does no harm where it does not act: parameters that were bent to make up for it do
         spared = self.elsewhere if self.share >= PLAIN else frozenset()
         change = {n: max(gain, self.usual.get(n, gain)) for n, gain in self.gain.items() if n not in spared}
         loss, worst = min(((change[n], n) for n in change), default=(0.0, ""))
         if loss < -SPOILED * max(most, GAIN_LEAST):
-            found.append(f"makes {worst} {-100.0 * loss:.0f} % worse on held-out runs")
+            found.append(f"makes the misfit of {worst} {-100.0 * loss:.0f} % larger on held-out runs")
         alone = self.first and (self.force > 1.0 or equation_helped(self.gain) not in MECHANICS)
         # along a profile of many sizes any texture can be followed
         texture = self.force <= 1.0 and is_profile(h.coordinates)
         if self.share < (PLAIN if texture else SHARE_LEAST[0 if alone else 1]):
-            found.append(f"removes {100.0 * self.share:.0f} % of what noise does not explain")
+            found.append(f"removes only {100.0 * self.share:.0f} % of what noise does not explain")
         return found
 
     def _shape_objections(self) -> list[str]:
-        """That it only mends the shape of what was added before, where the data say anything of it."""
+        """That it only corrects the law of what was added before, where the data say anything about it."""
         says = not self.absorbed or max(self.gain.values(), default=0.0) >= GAIN_LEAST
         if says and self.rest < REST_LEAST and self.share < NEARLY:
-            return [f"what it acts on is {100.0 * self.rest:.1f} % of what was left at first: a shape, no effect"]
+            left = f"only {100.0 * self.rest:.1f} % of the original misfit is left here"
+            return [f"{left}; more likely an inexact law of an added effect than a new one"]
         return []
 
     @property
@@ -110,18 +111,18 @@ class Candidate:
         """Why it may not be added; empty when it may."""
         h, found = self.hypothesis, self._shape_objections() + ([] if self.absorbed else self._data_objections())
         if self.size < MATERIAL:
-            found.append(f"its size is {self.size:.2g} of the usual one")
+            found.append(f"its size is only {self.size:.2g} times the usual one")
         if self.slowness > SLOWEST_USUAL:
             found.append(f"its time constant is {self.slowness:.0f} times the usual one")
         ends = [c.name for c, u in zip(h.coordinates, h.u, strict=True) if _at_end(c, float(u))]
         if ends:
-            found.append(f"{ends[0]} is at the end of its range")
+            found.append(f"{ends[0]} is at the end of its allowed range")
         if self.lag < 1.0:
-            found.append("its delay is less than a sample, which may be how the recording was timed")
+            found.append("its delay is shorter than a sample, as the timing of a recording may be")
         if self.refused:
             found.append(self.refused)
         if not self.stable:
-            found.append("its size depends on which run is left out")
+            found.append("its size changes too much when one run is left out")
         return tuple(found)
 
 

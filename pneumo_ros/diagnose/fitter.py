@@ -88,7 +88,7 @@ class Fitter:
     def simplest(self, model: Model, name: str) -> Model:
         """The model, or one refitted with a size of its effect `name` neutral, if that explains as much.
 
-        Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they stand in for each other
+        Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other
         over wide ranges, and a fit of both may end in a valley far from the true one.
         """
         own = coordinates(model.library.find(name))
@@ -148,7 +148,7 @@ class Fitter:
         return base_fit(self.train, self.whole, model, self.known(model))
 
     def deviations(self, model: Model) -> dict[str, float]:
-        """Cluster-robust standard deviation of every free parameter of `model`, infinite where the data say nothing.
+        """Cluster-robust standard deviation of every free parameter of `model`, infinite where not determined.
 
         Beside a parameter that its range holds, the others are as sure as if it were known.
         """

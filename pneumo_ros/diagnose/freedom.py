@@ -1,4 +1,4 @@
-"""Freedom of shape: a machine's law need not be the catalogue's, and what differs must not pass for another effect.
+"""Freedom of shape: a machine's law need not be the catalogue's, which must not be taken for another effect.
 
 A seal's friction grows less than in proportion to the pressures, a spring hardens, a leak is an orifice. So an effect
 that was added may act more or less than its law says where the piston is elsewhere, faster, under other pressures or

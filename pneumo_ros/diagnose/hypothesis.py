@@ -31,7 +31,7 @@ BASE = ("dead_zone", "arctan_flow", "lugre_friction", "rod_atmospheric_force", "
 def robust_scale(size: Array) -> float:
     """Root mean square of sizes (n,), each counted as fifty usual ones at most.
 
-    No tighter: an effect that shows in a few windows only (at slow motion, near an end) must not pass for outliers.
+    No tighter: an effect that shows in a few windows only (at slow motion, near an end) must not count as an outlier.
     """
     return float(np.sqrt(np.mean(np.minimum(size, FAR * usual(size)) ** 2))) if len(size) else 0.0
 

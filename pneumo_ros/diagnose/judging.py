@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
 DECOYS = 12
-WELL_KNOWN = 0.5  # of a size: runs that know it less well do not speak against it
+WELL_KNOWN = 0.5  # of a size: runs that know it less well do not count against it
 FEW_RUNS = 3
 NONE_WITHIN = 2.0  # deviations from none: a size that is nearer may be none
 
@@ -104,7 +104,7 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
     """Whether the sizes keep their sign and half their value, whichever run is left out (linearised).
 
     Runs that know a size to no better than half of it by themselves, as when one run alone goes to the end of the
-    stroke, say nothing against it.
+    stroke, do not count against it.
     """
     A, e, ridge = _parts(base, h)
     p, normal = len(base.names), A.T @ A

@@ -36,7 +36,7 @@ def polish(
 ) -> Refit:
     """Multiple shooting from `model`, over at most `most` segments of all runs.
 
-    What is free and what was known of it are those of `fitter`; estimates tell what changed against its start. `sure`:
+    What is free and what was known of it are those of `fitter`; estimates are changes against its start. `sure`:
     standard deviations of parameters of `model` that hold them beside that, as far as they are smaller.
     """
     known, held = fitter.known(model), sure or {}

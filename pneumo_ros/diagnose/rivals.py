@@ -1,4 +1,4 @@
-"""Effects that recordings cannot tell apart, and the simpler one of two that explain the same."""
+"""Effects that recordings do not distinguish, and the simpler one of two that explain the same."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from pneumo_ros.diagnose.measures import pooled_advantage
 Array = NDArray[np.float64]
 
 ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
-TIED = 2.5  # deviations by which a rival must be worse to be told apart
+TIED = 2.5  # deviations by which a rival must be worse to be distinguished
 SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
 
 
@@ -40,7 +40,7 @@ def _likeness(one: Array, other: Array) -> float:
 def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candidate | None:
     """The first of `good`, or what it contains when the runs do not ask for more; None of none.
 
-    They ask for more when they tell the two apart, and what lies between them is of some size.
+    They ask for more when they distinguish the two, and the difference between them is significant.
     """
     for other in good[1:]:
         little = _between(held, good[0], other) < MATERIAL

@@ -24,7 +24,9 @@ from pneumo_ros.diagnose.hypothesis import (
 Array = NDArray[np.float64]
 
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
-STRAINED = 4.5  # log likelihood that base parameters cost by their priors: more asks what they stand in for
+STRAINED = (
+    4.5  # log likelihood that base parameters cost by their priors: with more, effects that they replace are looked for
+)
 IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
 SMALL_STEP = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
 
@@ -32,7 +34,7 @@ SMALL_STEP = 0.005  # usual sizes: a step like those by which base parameters' s
 def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
 
-    Where base parameters are strained, also by the slope at neutral: what they stand in for, they do by slopes.
+    Where base parameters are strained, also by the slope at neutral: they replace an effect by its slope.
     """
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]

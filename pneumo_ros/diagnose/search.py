@@ -1,4 +1,4 @@
-"""The search for what a model lacks: refit, rank, try, add, repeat; then take back what does not pay."""
+"""The search for what a model lacks: refit, rank, try, add, repeat; then remove what does not improve predictions."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -34,8 +34,8 @@ Progress = Callable[[float, str], None]
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN_ANYWAY = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
-VANISHED = "nothing of it is left beside what was added since"
-UNHELPFUL = "predictions of held-out runs over 1 s get no better with it"
+VANISHED = "nothing of it is left beside the effects added later"
+UNHELPFUL = "predictions of held-out runs over 1 s do not improve with it"
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Ranking:
     held: BaseFit
     candidates: list[Candidate]
     screened: list[Hypothesis]
-    quiet: bool  # whether no force of size is unexplained
+    quiet: bool  # whether no significant force is unexplained
 
 
 class Search:
@@ -166,7 +166,7 @@ class Search:
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
 
-        Not where a force of size is unexplained while the piston slides: it does not end where the piston stops.
+        Not where a significant force is unexplained while the piston slides: it acts at breakaways, too.
         """
         made, ranking = self.slips(model), self.ranking(model)
         if made is None or not ranking.quiet:
@@ -215,7 +215,7 @@ class Search:
         hypotheses: Sequence[Hypothesis],
         screened: Sequence[Hypothesis],
     ) -> list[Candidate]:
-        """Candidates of the hypotheses, and of effects that strained base parameters may stand in for."""
+        """Candidates of the hypotheses, and of effects that strained base parameters may replace."""
         first = base.model.effects == self.start.effects
         candidates = judged(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
         good = [candidate.name for candidate in candidates if not candidate.objections]

@@ -29,7 +29,7 @@ SHARE_REMOVED = (
 MOST_FITTED = 3  # candidates that are fitted, of all that begin well
 EXPLAINED = 0.9  # share of the error beyond the noise's
 PART_EXPLAINED = (
-    0.3  # share of the error beyond the noise's: a candidate that removes as much is begun anew from other sizes
+    0.3  # share of the error beyond the noise's: a candidate that removes as much is restarted from other sizes
 )
 RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
@@ -134,10 +134,10 @@ class SlipFits:
         return Slipping(name, fitted, train, held, std, loss)
 
     def _resized(self, c: Slipping) -> Slipping:
-        """A candidate that explains part, begun anew from other sizes as long as it explains more.
+        """A candidate that explains part, restarted from other sizes as long as it explains more.
 
         Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
-        the equations along the motion speak against.
+        the equations along the motion contradict.
         """
         if self._share(c.held) < PART_EXPLAINED:
             return c
@@ -221,18 +221,22 @@ def as_candidate(
 ) -> Candidate:
     """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
 
-    `samples` of an event. All events together tell whether there is an effect, those held out whether it predicts.
+    `samples` of an event. All events together decide whether there is an effect, those held out whether it predicts.
     """
     u = np.array([k.u(c.model[k.name]) for k in effect])
     every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
-    enough = "" if share >= SHARE_REMOVED else f"removes {100.0 * share:.0f} % of what noise does not explain in slips"
+    enough = (
+        ""
+        if share >= SHARE_REMOVED
+        else f"removes only {100.0 * share:.0f} % of what noise does not explain at breakaways and reversals"
+    )
     if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
-        enough = f"the equations along the motion speak against it (log likelihood -{c.against:.3g})"
+        enough = f"the equations along the motion contradict it (they lose {c.against:.3g} in log likelihood)"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
-        enough = enough or "its size is no larger than its uncertainty"
+        enough = enough or "its size is not larger than its uncertainty"
     z = deviations_better(base_held, c.held, samples)
     return Candidate(
         h, np.empty(0), {"slip": gain}, z, magnitude(effect, u), True, share, first, 0.0,

@@ -1,7 +1,7 @@
 """What no equation along the motion shows: effects that act between sticking and sliding, judged by short simulations.
 
-The mechanics alone are simulated through breakaways, stops and reversals, every start fitted anew. How well a model
-does is told by the median over events of the squared error per sample, or by their upper quartile: a single breakaway
+The mechanics alone are simulated through breakaways, stops and reversals, every start fitted again. How well a model
+does is the median over events of the squared error per sample, or their upper quartile: a single breakaway
 caught a moment too early or too late, which no start mends, says nothing.
 """
 

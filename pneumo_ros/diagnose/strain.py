@@ -1,4 +1,4 @@
-"""Effects that base parameters stand in for: the recordings cannot tell, but what is known of those parameters can.
+"""Effects that base parameters replace: the recordings cannot decide, but what is known of those parameters can.
 
 Refitted far from where they are known to be, base parameters do what an effect would do with all of them in their
 places. The way from one to the other is a valley along which predictions hardly change, too bent for one linear step:
@@ -20,7 +20,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 MOST_FOLLOWED, PART_REGAINED = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
-SIMPLE = 3  # parameters: a profile can stand in for anything
+SIMPLE = 3  # parameters: a profile can replace anything
 SETS_OF_SLOPES = 12
 
 

@@ -1,6 +1,6 @@
-"""How late a position is recorded against the force that drives an axis: less than a sample is no effect, but counts.
+"""How late a position is recorded against the force that drives an axis: less than a sample is no effect, but matters.
 
-A force is measured, and nobody says when within a sample: where the axis jerks, half a millisecond is newtons, which
+When within a sample a force was measured is not known: where the axis jerks, half a millisecond is newtons, which
 friction would have to make up for. A delay of a sample or more is an effect, and found as one.
 """
 

@@ -1,4 +1,4 @@
-"""Runs that move the piston both ways: for refits of the whole machine, and to tell effects apart."""
+"""Runs that move the piston both ways: for refits of the whole machine, and to distinguish effects."""
 
 from random import Random
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]
 
 _ITERATIONS, _ENOUGH, _ALIKE = 6, 0.03, 0.01  # Gauss-Newton steps; share of the cost worth another; cost of nothing
-_ANEW = 2  # steps for which all derivatives are taken anew; then only those of the effect, which may be far from linear
+_ANEW = 2  # steps for which all derivatives are renewed; then only those of the effect, which may be far from linear
 _SHORTER = (1.0, 0.5, 0.2, 0.05)  # steps tried
 _VAGUE, _SHAPE = 100.0, 1.0  # prior deviations of strengths and of other parameters of the effect, in usual sizes
 
@@ -69,7 +69,7 @@ def imitate(evidence: Sequence[Whitened], truth: Model, model: Model, free: Unkn
     """Squared noise deviations that are left, per family of residuals, and last those of the priors.
 
     `truth` has made the record; its own residuals, which are those of sums over samples, are the mark. Gauss-Newton
-    with bounds; the equations are evaluated anew at every step, so that what is left is not a linear guess.
+    with bounds; the equations are evaluated again at every step, so that what is left is not a linear guess.
     """
     marks = _families(evidence, truth)
     mark = np.concatenate(marks)

@@ -1,4 +1,4 @@
-"""What is offered to tell effects apart: experiments, and under which conditions they are recorded."""
+"""What is offered to distinguish effects: experiments, and under which conditions they are recorded."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -9,7 +9,7 @@ from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.stepper import Stepper
 
-SAMPLE = 4e-3  # s; what the conductor decides does not hang on milliseconds
+SAMPLE = 4e-3  # s; what the conductor decides does not depend on milliseconds
 EVERY = 0.1  # s between two points of the path that is kept
 
 

@@ -1,4 +1,4 @@
-"""Which experiment tells two effects apart, and how well."""
+"""Which experiment distinguishes two effects, and how well."""
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -13,7 +13,7 @@ from pneumo_ros.experiment.record import Record, record
 from pneumo_ros.experiment.whitened import FAMILIES, Noise, Whitened
 from pneumo_ros.plant import Model
 
-CLEAR = 5.0  # noise deviations that tell effects apart, whatever was looked for; fewer than 2 tell nothing
+CLEAR = 5.0  # noise deviations that distinguish effects, whatever was looked for; fewer than 2 decide nothing
 NOTHING = 2.0
 WHERE = (*FAMILIES, "what is known of the other parameters")
 
@@ -22,10 +22,10 @@ Progress = Callable[[float], None]  # told the share that is done, 0 to 1
 
 @dataclass(frozen=True)
 class Separation:
-    """What an experiment would tell.
+    """What an experiment would decide.
 
     if_a, if_b: noise deviations left when the one effect has made the record and the other is fitted to it, with the
-    parameters that a refit may move. where: the equation that tells most. refused: why it must not be done, else "".
+    parameters that a refit may move. where: the most informative equation. refused: why it must not be done, else "".
     """
 
     offer: Offer
@@ -56,7 +56,7 @@ def separate(
     threads: int = 2,
     progress: Progress | None = None,
 ) -> list[Separation]:
-    """Every experiment of `offers` (default: the menu), the one that tells most first; refused ones last.
+    """Every experiment of `offers` (default: the menu), the most informative first; refused ones last.
 
     Each effect has its value in `model`, or its parameters' defaults. Raises UsageError for unknown or equal effects,
     for those that the machine cannot be without or have, and for a machine without valve.
@@ -91,7 +91,7 @@ def rivals(model: Model, effect_a: str, effect_b: str) -> tuple[Model, Model]:
 
 
 def _judge(offer: Offer, models: tuple[Model, Model], effects: tuple[str, str], noise: Noise) -> Separation:
-    """What `offer` tells if the first is true, and if the second is."""
+    """What `offer` decides if the first is true, and if the second is."""
     found, duration = [], 0.0
     for k, truth in enumerate(models):
         records = [record(part, truth) for part in offer.parts]

@@ -111,7 +111,7 @@ class Assembly:
         self._correlate([fit.names[k] for k in keep], fit.correlation[np.ix_(keep, keep)])
 
     def _open(self) -> dict[str, float]:
-        """Prior deviations of what the motion is to tell."""
+        """Prior deviations of what the motion is to determine."""
         free = {}
         for name in self.wanted:
             size = max(abs(self.model[name]), abs(self.model.specification(name).default))
@@ -125,13 +125,13 @@ class Assembly:
         return free
 
     def map_again(self, points: Sequence[MapPoint], breakaways: Sequence[Breakaway]) -> None:
-        """The map once more where it left the Stribeck velocity open and the motion told it."""
+        """The map once more where it left the Stribeck velocity open and the motion determined it."""
         if STRIBECK not in self.map_fit.undetermined or STRIBECK in self.unknown:
             return
-        told = {name for name in self.wanted if self.found[name].remark.startswith("motion")}
+        by_motion = {name for name in self.wanted if self.found[name].remark.startswith("motion")}
         self.map_fit = fit_map(self.model, points, breakaways, self.wanted)
         for name in self.wanted:
-            if name not in told:
+            if name not in by_motion:
                 self._from_map(name)
-        keep = [k for k, name in enumerate(self.map_fit.names) if name not in told]
+        keep = [k for k, name in enumerate(self.map_fit.names) if name not in by_motion]
         self._correlate([self.map_fit.names[k] for k in keep], self.map_fit.correlation[np.ix_(keep, keep)])

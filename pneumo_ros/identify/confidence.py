@@ -23,7 +23,7 @@ def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequenc
 
     residual (n,) is whitened, jacobian (n, p), weight (n,) the robust weights, groups (n,) the run of each residual,
     empty for what is no measurement but was known before.
-    Infinite half widths, and NaN for correlations, belong to parameters that the residuals do not tell apart.
+    Infinite half widths, and NaN for correlations, belong to parameters that the residuals do not distinguish.
     The wider of two: independent errors of the residuals' own size (at least 1), and errors that are alike within a
     run (jackknife over runs, Bell and McCaffrey 2002, with Student's t over the runs), from six runs on.
     """
@@ -55,7 +55,7 @@ def _jackknife(jacobian: Array, weight: Array, residual: Array, labels: NDArray[
 def _inverse(normal: Array, whole: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Inverse (p, p) within what the data see, and whether they see each parameter (p,) or only sums with others.
 
-    `whole` is the normal matrix of all data, which tells how much is much.
+    `whole` is the normal matrix of all data, which gives the scale.
     """
     size = np.sqrt(np.diag(whole))
     size = np.where(size > 0.0, size, 1.0)

@@ -19,7 +19,7 @@ STARTS = 8
 F_SCALE = 3.0  # deviations: beyond, residuals count linearly
 SLOW = 3.0  # Stribeck velocities: slower points say something of the Stribeck curve
 LOOSE = 0.2  # relative half width of an interval beyond which a parameter counts as not determined
-SPAN = 1.5  # fastest over slowest point, below which Coulomb friction and what grows with speed are told apart by luck
+SPAN = 1.5  # fastest over slowest point, below which Coulomb friction and what grows with speed are not distinguished
 _WEAK = 0.5  # relative deviation of what was known before of a parameter that the data do not touch
 _STRIBECK = ("lugre_friction.stribeck_velocity", "stribeck_shape.exponent")
 

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 BEFORE_BREAKAWAY, AFTER_BREAKAWAY = 0.7, 0.3  # s around a breakaway
-RAMP = 15.0  # N/s: under a slower ramp the moment of breakaway hangs on hundredths of a newton
+RAMP = 15.0  # N/s: under a slower ramp the moment of breakaway depends on hundredths of a newton
 FEWEST_BREAKAWAYS, MOST_BREAKAWAYS = 4, 20  # breakaways: fewer say too little, more say nothing new
 _SURE, _KNOWN = 0.01, 0.05  # relative deviations of valve parameters, identified or as given
 

@@ -1,4 +1,4 @@
-"""Stretches of constant velocity and constant pressures, found without being told where they are."""
+"""Stretches of constant velocity and constant pressures, found without knowing where they are."""
 
 import itertools
 from collections.abc import Callable

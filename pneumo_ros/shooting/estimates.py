@@ -55,10 +55,10 @@ def estimates(unknowns: Unknowns, solution: Solution) -> tuple[dict[str, Estimat
     """Estimates by name and correlation (free, free), from a bootstrap over segments of the linearised problem."""
     active, theta, prior = solution.active, solution.theta, unknowns.prior
     matrices, gradients = solution.equations.matrix[active], solution.equations.gradient[active]
-    # what the next step would take away is no scatter; segments that tell nothing keep a gradient of nothing
+    # what the next step would take away is no scatter; segments that determine nothing keep a gradient of zero
     rest = np.linalg.lstsq(matrices.sum(0), gradients.sum(0), rcond=1e-12)[0]
     shifts = _bootstrap(matrices, gradients - matrices @ rest)
-    # what only the prior tells does not change when segments are drawn anew: the prior's own deviation counts there
+    # what only the prior determines does not change when segments are drawn again: its own deviation counts there
     posterior = np.sqrt(np.diag(np.linalg.inv(matrices.sum(0) + np.eye(len(theta)))))
     drawn = np.minimum(shifts.std(0) * _small_sample(len(matrices)), 1.0)  # no data make known less than was known
     deviation = np.maximum(drawn, posterior) * prior

@@ -26,7 +26,7 @@ __all__ = ["Estimate", "Refit", "default_free", "refit", "refit_segments"]
 SEGMENT = 0.5  # s
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
 
-# What a scale, a ruler or a table tells better than a motion: fixed unless asked for.
+# What a scale, a ruler or a table determines better than a motion: fixed unless asked for.
 FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
 FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
 
@@ -55,7 +55,7 @@ def refit(
     `priors` maps dotted names to standard deviations in the parameter's unit (default `default_prior`). `segment` [s]
     is the length of the shooting segments, `share` how many of them are used, evenly drawn. With `start`, an earlier
     refit to the same runs and `segment`, parameters begin where it ended, and keep the priors they had there unless
-    others are given; a few iterations then tell what another effect changes. Raises UsageError for unknown names,
+    others are given; a few iterations then show what another effect changes. Raises UsageError for unknown names,
     DataError when no run holds a segment, NumericalError when no prediction is finite.
     """
     names = default_free(model) if free is None else tuple(free)

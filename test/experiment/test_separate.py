@@ -73,11 +73,13 @@ def test_vented_chambers_show_an_offset_of_their_sensors_which_no_leak_explains(
     assert vent.if_b < 0.1  # a leak to the atmosphere has nothing to leak
 
 
-def test_a_load_of_any_size_is_not_told_from_the_force_on_the_rod() -> None:
+def test_a_load_of_any_size_is_not_distinguished_from_the_force_on_the_rod() -> None:
     ranked = separate(AXIS, "rod_atmospheric_force", "constant_load", offers=[MENU["steps"], MENU["slow-reversals"]])
     assert max(one.separation for one in ranked) < 0.5
     assert best(ranked) is None
-    assert suggestion(ranked, "rod_atmospheric_force", "constant_load").startswith("No experiment on the menu tells")
+    assert suggestion(ranked, "rod_atmospheric_force", "constant_load").startswith(
+        "No experiment on the menu distinguishes"
+    )
 
 
 def test_more_noise_tells_less() -> None:
