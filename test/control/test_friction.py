@@ -34,6 +34,13 @@ def test_along_a_motion_with_reversals_it_is_the_plants_friction() -> None:
     assert np.abs(ours - theirs)[sliding].max() < 2.0
 
 
+@pytest.mark.parametrize("velocity", [-0.3, -0.01, 0.01, 0.2])
+def test_the_running_slope_is_the_derivative_of_what_grows_with_speed(velocity: float) -> None:
+    observer, step = FrictionObserver(Machine(viscous_friction=30.0, drag=4000.0)), 1e-6
+    slope = (observer.running(velocity + step) - observer.running(velocity - step)) / (2.0 * step)
+    assert observer.running_slope(velocity) == pytest.approx(slope, rel=1e-6)
+
+
 @pytest.mark.parametrize("velocity", [0.001, 0.02, 0.18, 3.0])
 @pytest.mark.parametrize("dt", [1e-4, 1e-3, 1e-2])
 def test_steady_sliding_is_exact_at_any_speed_and_sample_time(velocity: float, dt: float) -> None:

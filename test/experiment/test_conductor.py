@@ -146,16 +146,17 @@ def test_a_piston_at_the_end_stop_is_taken_away_from_it() -> None:
     assert list(Ride(PROGRAMME, position=-1.0).outcomes) == ["slow", "back"]
 
 
-def test_reaching_the_end_stop_ends_everything() -> None:
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_reaching_the_end_stop_ends_everything(side: float) -> None:
     def runaway(volts: float, position: float) -> float:
-        return 0.3 if position > 0.0 else cart(volts, position)
+        return 0.3 * side if side * position > 0.01 else cart(volts, position)
 
-    assert "has reached the end stop, +0.99" in aborts(PROGRAMME, runaway)
+    assert f"has reached the end stop, {0.99 * side:+.2f}" in aborts(PROGRAMME, runaway)
 
 
 def test_the_wrong_way_ends_everything() -> None:
     reason = aborts(PROGRAMME, lambda volts, position: -cart(volts, position))
-    assert "the wrong way" in reason
+    assert "the piston went 20 mm the wrong way" in reason
     assert "swapped" in reason
 
 

@@ -55,6 +55,14 @@ def test_what_was_recorded_otherwise_is_put_right(words: tuple[str, ...]) -> Non
         np.testing.assert_allclose(getattr(mended, name), getattr(right, name), rtol=1e-12, atol=1e-9, err_msg=name)
 
 
+def test_units_are_those_of_the_standards() -> None:
+    """A psi is a pound-force, 0.45359237 kg times 9.80665 m/s2, on a square inch of 0.0254 m."""
+    assert PRESSURE_UNITS["psi"] == pytest.approx(0.45359237 * 9.80665 / 0.0254**2, rel=1e-12)
+    assert {name: PRESSURE_UNITS[name] for name in ("hPa", "kPa", "bar", "MPa")} == {
+        "hPa": 100.0, "kPa": 1000.0, "bar": 100_000.0, "MPa": 1_000_000.0,
+    }  # fmt: skip
+
+
 def test_what_is_not_recorded_stays_so() -> None:
     pushed = recording(time=TIME, position=SWING, effort=SWING)
     mended = corrected(pushed, ("bar", "gauge", "reversed-position"), ATMOSPHERE)
