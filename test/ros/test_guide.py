@@ -37,6 +37,17 @@ def test_stop_closes_the_valve_until_resume_and_the_piston_stays_there() -> None
     assert run.position == 0.1
 
 
+def test_after_a_stop_it_holds_where_the_piston_has_drifted_to() -> None:
+    run = moving()
+    run.guide.stop()
+    run.go()
+    run.position += 0.02
+    run.go()
+    run.guide.hold(run.loop.time)
+    run.go()
+    assert run.loop.wanted == Setpoint(run.position)
+
+
 def test_whatever_ends_the_motion_ends_a_trajectory() -> None:
     for end in (
         lambda run: run.guide.stop(),
