@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import ClassVar
 
 from pneumo_ros.control.gain import Gain
-from pneumo_ros.control.machine import Machine
+from pneumo_ros.control.machine import FLOW, Machine
 from pneumo_ros.control.measurement import Measurement
 from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.control.valve import ValveInverse
@@ -23,6 +23,7 @@ class Law(ABC):
 
     gains: ClassVar[Mapping[str, Gain]] = {}
     reads_pressures: ClassVar[bool] = False  # whether `step` uses the pressures of a measurement
+    inverts_flow: ClassVar[bool] = False  # whether it needs to know what flows through the valve
     tuned: ClassVar[tuple[str, ...]] = ()  # gains that are found by simulation, the ones that matter most first
 
     def __init_subclass__(cls) -> None:
@@ -35,8 +36,18 @@ class Law(ABC):
         valve: ValveInverse | None = None,
         machine: Machine | None = None,
     ) -> None:
-        """Take `gains` by name, defaults for the others; raises UsageError as `tune` does."""
+        """Take `gains` by name, defaults for the others.
+
+        Raises UsageError as `tune` does, and for a machine whose valve flow the law needs and no law knows.
+        """
         self.valve, self.machine = valve or ValveInverse(), machine or Machine()
+        if self.inverts_flow and not self.machine.has_flow:
+            listed = ", ".join(self.machine.effects) or "no effects"
+            raise UsageError(
+                f"law {type(self).__name__} inverts the valve flow of {FLOW}, by itself or with choked_flow; this "
+                f"machine lists {listed}: take law pid, which inverts the dead zone alone, or describe the valve by "
+                f"{FLOW}"
+            )
         self._time: float | None = None
         self._answer = 0.0
         self.tune({name: gain.default for name, gain in self.gains.items()} | dict(gains or {}))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
 ATMOSPHERE = "rod_atmospheric_force"  # an effect without parameters
+FLOW = "arctan_flow"  # the flow that laws invert, by itself or with a share of choked_flow
 
 
 def _known(dotted: str, default: float, absent: float | None = None) -> float:
@@ -29,8 +30,8 @@ class Machine:
     heat_capacity_ratio: float = _known("air.heat_capacity_ratio", 1.4)
     volume_a: float = _known("chambers.volume_a", 5.1e-4)
     volume_b: float = _known("chambers.volume_b", 4.0e-4)
-    filling_coefficient: float = _known("arctan_flow.filling_coefficient", 0.69501e-8)
-    exhaust_coefficient: float = _known("arctan_flow.exhaust_coefficient", 0.898105e-8)
+    filling_coefficient: float = _known("arctan_flow.filling_coefficient", 0.69501e-8, 0.0)
+    exhaust_coefficient: float = _known("arctan_flow.exhaust_coefficient", 0.898105e-8, 0.0)
     voltage_gain: float = _known("arctan_flow.voltage_gain", 2.0)
     choked_share: float = _known("choked_flow.blend", 0.0)
     conductance_filling: float = _known("choked_flow.conductance_filling", 5e-9)
@@ -50,6 +51,8 @@ class Machine:
     spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # there: a spool without lag
     spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
     atmosphere_on_rod: bool = True
+    has_flow: bool = True  # whether `FLOW` says what flows through the valve
+    effects: tuple[str, ...] = field(default=(), compare=False)  # that the machine lists, for messages
 
     @classmethod
     def of(cls, effects: Collection[str], values: Mapping[str, float]) -> "Machine":
@@ -58,7 +61,7 @@ class Machine:
         What `values` lacks is absent from the machine; names that no law uses are passed over.
         """
         known = {f.name: float(values.get(f.metadata["dotted"], f.metadata["absent"])) for f in _FIELDS}
-        return cls(**known, atmosphere_on_rod=ATMOSPHERE in effects)
+        return cls(**known, atmosphere_on_rod=ATMOSPHERE in effects, has_flow=FLOW in effects, effects=tuple(effects))
 
     @property
     def moving_mass(self) -> float:

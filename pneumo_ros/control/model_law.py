@@ -35,7 +35,7 @@ class ModelLaw(Law):
     tolerance doubles with each further one, until the setpoint moves on: no law hunts for ever.
     """
 
-    reads_pressures = True
+    reads_pressures = inverts_flow = True
     bandwidth = Gain(300.0, "rad/s", "of the estimate of velocity and acceleration", 10.0, 3000.0)
     tolerance = Gain(2e-4, "m", "error that is left alone at rest", 0.0, 0.1)
     rest_span = Gain(5e-5, "m", "motion that counts as none: noise, and bristles that ring", 0.0, 0.01)

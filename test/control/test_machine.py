@@ -1,10 +1,14 @@
 """What the laws know of a machine is what its file says, and an effect that it does not list is not there."""
 
+from pathlib import Path
+
 import pytest
 
-from pneumo_ros.control import Machine
+from pneumo_ros.control import LAWS, Machine
+from pneumo_ros.control.control_file import load_control
 from pneumo_ros.control.machine import ABSENT, PARAMETERS
-from pneumo_ros.plant import Library, load_model
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Library, Model, load_model
 from pneumo_ros.plant.library import FRAME
 
 
@@ -30,3 +34,31 @@ def test_every_parameter_is_one_of_the_plant_and_its_absence_is_allowed(name: st
     known = (Library.frame(section) if section in FRAME else Library().find(section)).parameters[key]
     assert known.low <= ABSENT[name] <= known.high
     assert known.low <= PARAMETERS[name] <= known.high
+
+
+OWN_VALVE = """
+from pneumo_ros.plant.effect import Effect, Parameter
+
+class OwnValve(Effect):
+    \"\"\"Flow in proportion to the opening.\"\"\"
+    gain = Parameter(1e-8, "kg/(s Pa V)", "flow per opening and pressure difference", low=0.0, high=1.0)
+
+    def equations(opening, p_a, p_b, p_s, p_atm, gain):
+        valve_flow_a = gain * opening * (p_s - p_a if opening > 0.0 else p_a - p_atm)
+        valve_flow_b = -gain * opening * (p_b - p_atm if opening > 0.0 else p_s - p_b)
+        return valve_flow_a, valve_flow_b
+"""
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_valve_that_no_law_knows_is_refused_where_its_flow_is_inverted(name: str, tmp_path: Path) -> None:
+    """Laws took the coefficients of the default valve for it."""
+    file = tmp_path / "own_valve.py"
+    file.write_text(OWN_VALVE, encoding="utf-8")
+    own = Model.build(["dead_zone", "own_valve", "lugre_friction"], {}, library=Library([file]), defaults=True)
+    if name == "pid":
+        assert load_control(name).make(own.effects, own.parameters).machine.filling_coefficient == 0.0
+    else:
+        listed = "this machine lists dead_zone, own_valve, lugre_friction: take law pid"
+        with pytest.raises(UsageError, match=listed):
+            load_control(name).make(own.effects, own.parameters)

@@ -6,6 +6,8 @@ from typing import Any
 import pytest
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.ros.controller.settings import SETTINGS as CONTROLLER
+from pneumo_ros.ros.controller.settings import absent, check
 from pneumo_ros.ros.setting import Setting
 
 MASS = Setting("mass", 5.0, "moving mass", "kg", 0.1)
@@ -63,3 +65,12 @@ def test_the_descriptor_has_unit_and_a_finite_range_that_holds_the_value() -> No
     assert "sine, steps" in SHAPE.descriptor("sine").additional_constraints
     assert SEED.descriptor(0).integer_range[0].to_value == 100
     assert Setting("rate", 1.0, "", live=False).descriptor(1.0).read_only
+
+
+def test_the_controller_refuses_a_law_that_does_not_know_the_valve() -> None:
+    given = {one.name: one.default for one in CONTROLLER} | {"law": "cascade"}
+    check(given)
+    other = given | {"effects": ["dead_zone", "own_valve"]}
+    with pytest.raises(UsageError, match="this machine lists dead_zone, own_valve: take law pid"):
+        check(other | absent(other))
+    check(other | absent(other) | {"law": "pid"})
