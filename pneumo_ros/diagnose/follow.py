@@ -13,7 +13,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.runs.sensors import shifted, taken_back
+from pneumo_ros.runs.sensors import driven_lanes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -97,34 +97,17 @@ def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> t
 def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
     """Lanes driven along the measured states less what sensors do: those with the same sensors along the same."""
     first, group = alike_sensors(model, parameters)
-    given, own_states, own_mean = _without_sensors(model, frame, parameters[first], parts)
+    own = parameters[first]
+    given, own_states, own_mean = driven_lanes(
+        model, frame.states, frame.run, own,
+        lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts), _SETTLED,
+    )  # fmt: skip
     states, mean = own_states[group], own_mean[group]
     for k, lane in enumerate(first):
         others = np.setdiff1d(np.flatnonzero(group == k), lane)
         if len(others):
             states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others], parts)
     return states, mean
-
-
-def _without_sensors(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array, Array]:
-    """Frame states without what sensors do (lanes, n, 2 or 4), and the lanes driven along them.
-
-    By a fixed point of two steps at most. Each lane stops by itself: what it gives does not depend on those beside it.
-    A lane that has left the finite numbers stops at once, and comes back as it is.
-    """
-    states, mean = _as_measured(model, frame, parameters, parts)
-    given = np.repeat(frame.states[None], len(states), axis=0)
-    moving, before = np.arange(len(states)), np.zeros((len(states), 1, 1))
-    for _ in range(2):
-        shift = taken_back(model, states[moving], parameters[moving], frame.run)
-        still = np.any(np.abs(shift - before).max(axis=1) > _SETTLED[: shift.shape[-1]], axis=1)
-        still &= np.isfinite(shift).all(axis=(1, 2))
-        moving, before = moving[still], shift[still]
-        if not len(moving):
-            break
-        given[moving] = [shifted(frame.states, own, frame.run.sample_time) for own in before]
-        states[moving], mean[moving] = _drive_lanes(model, frame.run, given[moving], parameters[moving], parts)
-    return given, states, mean
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:

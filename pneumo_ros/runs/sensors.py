@@ -1,5 +1,7 @@
 """What the machine did, from what its sensors read: measurements corrected for the sensor effects of a model."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +11,12 @@ from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+# from frames (lanes, n, 2 or 4) and which lanes they are to states and mean derivatives, both (lanes, n, states)
+Drive = Callable[[Array, Index], tuple[Array, Array]]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
-_ENOUGH = (1e-7, 1.0)  # m, Pa: a tenth of what any sensor of such a machine resolves
+_ENOUGH = (1e-7, 1.0, 1.0)  # m, Pa, Pa: a tenth of what any sensor of such a machine resolves
 
 
 def corrected(model: Model, frame: Array, run: Run) -> Array:
@@ -24,26 +29,43 @@ def corrected(model: Model, frame: Array, run: Run) -> Array:
 
 
 def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
-    """As `Model.follow` along the corrected frame: states, frame included, and mean derivatives, both (n, states).
-
-    The readings r(x) are inverted by the fixed point x = x_measured - (r(x) - x), which drives the sensors' own states
-    anew each time; the velocity is corrected by the derivative of the correction of position.
-    """
+    """As `Model.follow` along the corrected frame: states, frame included, and mean derivatives, both (n, states)."""
     rest = model.state()[frame.shape[1] :]
-    states, rates = model.follow(frame, run.input, rest, sample_time=run.sample_time, parts=PARTS)
+
+    def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
+        states, rates = model.follow(given[0], run.input, rest, sample_time=run.sample_time, parts=PARTS)
+        return states[None], rates[None]
+
     if model.composition.true_sensors:
-        return states, rates
-    before = np.zeros((len(frame), frame.shape[1] - 1))
+        states, rates = drive(frame[None], np.zeros(1, dtype=np.int64))
+    else:
+        _, states, rates = driven_lanes(model, frame, run, None, drive, _ENOUGH)
+    return states[0], rates[0]
+
+
+def driven_lanes(
+    model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, enough: Sequence[float]
+) -> tuple[Array, Array, Array]:
+    """Frame states without what sensors do (lanes, n, 2 or 4), and what `drive` makes along them: states and rates.
+
+    The readings r(x) are inverted by the fixed point x = x_measured - (r(x) - x), of two steps at most, which drives
+    the sensors' own states anew each time; the velocity is corrected by the derivative of the correction of position.
+    Each lane stops by itself, when its correction changes by no more than `enough` [m, Pa, Pa]: what it gives does not
+    depend on those beside it. parameters (lanes, parameters), or None for one lane with the model's own.
+    """
+    count = 1 if parameters is None else len(parameters)
+    moving, before = np.arange(count), np.zeros((count, 1, 1))
+    given = np.repeat(frame[None], count, axis=0)
+    states, rates = drive(given, moving)
     for _ in range(_ITERATIONS):
-        shift = taken_back(model, states[None], None, run)[0]
-        change = np.abs(shift - before).max(axis=0)
-        if not (change > np.append(_ENOUGH[0], np.full(len(change) - 1, _ENOUGH[1]))).any():
+        shift = taken_back(model, states[moving], None if parameters is None else parameters[moving], run)
+        still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
+        moving, before = moving[still], shift[still]
+        if not len(moving):
             break
-        states, rates = model.follow(
-            shifted(frame, shift, run.sample_time), run.input, rest, sample_time=run.sample_time, parts=PARTS
-        )
-        before = shift
-    return states, rates
+        given[moving] = [shifted(frame, own, run.sample_time) for own in before]
+        states[moving], rates[moving] = drive(given[moving], moving)
+    return given, states, rates
 
 
 def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:
