@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
+from flask import Flask
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.workbench.uploads import place
+from pneumo_ros.workbench import uploads
+from pneumo_ros.workbench.uploads import accept_uploads, place
 
 
 @pytest.mark.parametrize(
@@ -39,3 +41,15 @@ def test_a_link_leads_nowhere(tmp_path: Path) -> None:
 def test_other_kinds_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"x\.py is no part of a recording; these are: \.mcap, \.db3, \.yaml"):
         place(tmp_path, "x.py")
+
+
+def test_the_files_of_a_desk_have_a_limit_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(uploads, "_MOST", 100)
+    server = Flask("uploads")
+    accept_uploads(server, lambda desk: tmp_path)
+    browser = server.test_client()
+    assert browser.put("/upload/1/a.mcap", data=b"x" * 60).status_code == 204
+    refused = browser.put("/upload/1/b.mcap", data=b"x" * 60)
+    assert (refused.status_code, refused.text.partition(";")[0]) == (400, "there is no room for more recordings")
+    assert browser.put("/upload/1/c.mcap", data=b"x" * 30).status_code == 204
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.mcap", "c.mcap"]
