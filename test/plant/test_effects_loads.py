@@ -46,6 +46,17 @@ def test_no_spring_changes_more_than_tenfold(hardening: float, stiffer: float) -
     assert seen("spring_load", "force", given, y=0.9) - 11.0 == pytest.approx(0.7 * STIFFNESS * stiffer, rel=1e-9)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_end_stop_resists_more_on_the_way_in_than_out_and_never_pulls(side: float) -> None:
+    """F = k x (1 + d x') at either end, x and x' counted into the stop."""
+    model, rod = in_python(AXIS), 1e5 * (4.1e-4 - 3.0e-4)
+    k, d, x = model["end_stop.stiffness"], model["end_stop.damping"], 1e-4
+    for inwards in (0.1, 0.0, -0.1, -10.0):
+        state = model.state(y=side * (0.5 * model["piston.stroke"] + x), v=side * inwards)
+        force = float(model.outputs(state, 0.0)["force"][0]) - rod
+        assert force == pytest.approx(side * k * x * max(1.0 + d * inwards, 0.0), rel=1e-6, abs=1e-9)
+
+
 def test_payload_is_felt_in_acceleration_alone() -> None:
     def rates(model: Model) -> np.ndarray:
         plain = in_python(model)
