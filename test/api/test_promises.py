@@ -4,21 +4,23 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
-import pytest
-
 import pneumo_ros
+from pneumo_ros.errors import UsageError
 
-PURE = ("plant", "records", "control", "identify", "diagnose", "command", "workbench")
+
+@cache
+def modules() -> list[Any]:
+    """All public modules but the nodes, whose callbacks belong to rclpy."""
+    names = (found.name for found in pkgutil.walk_packages(pneumo_ros.__path__, "pneumo_ros."))
+    return [importlib.import_module(name) for name in names if is_public(name.split(".")[1:])]
 
 
-def public_modules() -> Iterator[str]:
-    """Names of all modules but the nodes, whose callbacks belong to rclpy."""
-    for found in pkgutil.walk_packages(pneumo_ros.__path__, "pneumo_ros."):
-        parts = found.name.split(".")
-        if parts[1] not in ("ros", "__main__") and not any(part.startswith("_") for part in parts[1:]):
-            yield found.name
+def is_public(parts: list[str]) -> bool:
+    """Whether a module may be imported by users."""
+    return parts[0] not in ("ros", "__main__") and not any(part.startswith("_") for part in parts)
 
 
 def public_members(module: Any) -> Iterator[tuple[str, Any]]:
@@ -35,87 +37,91 @@ def is_effect(member: Any) -> bool:
     return inspect.isclass(member) and issubclass(member, Effect)
 
 
-def callables() -> Iterator[tuple[str, Callable[..., Any]]]:
-    """Every public function, and every public method written in this package."""
-    for module_name in public_modules():
-        module = importlib.import_module(module_name)
+@cache
+def callables() -> dict[str, Callable[..., Any]]:
+    """Every public function, and every public method written in this package, by its full name."""
+    found = {}
+    for module in modules():
         for name, member in public_members(module):
             if inspect.isfunction(member):
-                yield f"{module_name}.{name}", member
+                found[f"{module.__name__}.{name}"] = member
             elif inspect.isclass(member) and not is_effect(member):
-                for method, function in vars(member).items():
-                    inner = getattr(function, "__func__", function)
-                    written = inspect.isfunction(inner) and inner.__qualname__ == f"{member.__qualname__}.{method}"
-                    # dataclasses and named tuples write __init__ and its like themselves, from annotated fields
-                    if written and (method == "__init__" or not method.startswith("_")) and _has_source(inner):
-                        yield f"{module_name}.{name}.{method}", inner
+                methods = {f"{module.__name__}.{name}.{key}": inner for key, inner in written_methods(member)}
+                found.update(methods)
+    return found
 
 
-def _has_source(function: Callable[..., Any]) -> bool:
+def written_methods(owner: type) -> Iterator[tuple[str, Callable[..., Any]]]:
+    """Public methods in the source of a class; dataclasses make others up, from annotated fields."""
+    for name, function in vars(owner).items():
+        inner = getattr(function, "__func__", function)
+        own = inspect.isfunction(inner) and inner.__qualname__ == f"{owner.__qualname__}.{name}"
+        if own and (name == "__init__" or not name.startswith("_")) and has_source(inner):
+            yield name, inner
+
+
+def has_source(function: Callable[..., Any]) -> bool:
+    """Whether a file holds the function."""
     return not function.__code__.co_filename.startswith("<")
 
 
-CALLABLES = dict(callables())
-CLASSES = {
-    f"{module}.{name}": member
-    for module in public_modules()
-    for name, member in public_members(importlib.import_module(module))
-    if inspect.isclass(member)
-}
+def classes() -> dict[str, type]:
+    """Every public class by its full name."""
+    return {f"{m.__name__}.{name}": one for m in modules() for name, one in public_members(m) if inspect.isclass(one)}
 
 
-def test_there_is_something_to_check() -> None:
-    rooms = {name.split(".")[1] for name in CALLABLES}
-    assert {"plant", "records", "command"} <= rooms
+def test_all_rooms_are_looked_at() -> None:
+    rooms = {name.split(".")[1] for name in callables()}
+    assert {"plant", "records", "control", "identify", "diagnose", "command", "workbench"} <= rooms
+    assert len(callables()) > 1000
+    assert len(classes()) > 100
 
 
-@pytest.mark.parametrize("name", sorted(CALLABLES))
-def test_arguments_and_result_are_annotated(name: str) -> None:
-    signature = inspect.signature(CALLABLES[name])
-    bare = [
-        parameter.name
-        for parameter in signature.parameters.values()
-        if parameter.annotation is parameter.empty and parameter.name not in ("self", "cls")
-    ]
-    assert not bare, f"{name}: arguments without annotation: {bare}"
-    assert signature.return_annotation is not signature.empty, f"{name}: result without annotation"
+def test_arguments_and_results_are_annotated() -> None:
+    bare = []
+    for name, function in callables().items():
+        signature = inspect.signature(function)
+        arguments = [p for p in signature.parameters.values() if p.name not in ("self", "cls")]
+        bare += [f"{name}: {p.name}" for p in arguments if p.annotation is p.empty]
+        bare += [f"{name}: result"] if signature.return_annotation is signature.empty else []
+    assert not bare
 
 
-@pytest.mark.parametrize("name", sorted(CALLABLES))
-def test_is_documented(name: str) -> None:
-    function = CALLABLES[name]
-    # __init__ speaks through its class; a method that overrides inherits what it promises
-    if not name.endswith(".__init__"):
-        assert (inspect.getdoc(function) or "").strip(), f"{name} has no docstring"
+def test_functions_are_documented() -> None:
+    """`__init__` is described by its class; a method that overrides another inherits its docstring."""
+    found = callables().items()
+    assert not [name for name, function in found if not name.endswith(".__init__") and not inspect.getdoc(function)]
 
 
-@pytest.mark.parametrize("name", sorted(CLASSES))
-def test_class_is_documented(name: str) -> None:
-    written = CLASSES[name].__doc__ or ""
-    assert written.strip(), f"{name} has no docstring"
-    assert not written.startswith(f"{CLASSES[name].__name__}("), f"{name} has only the docstring dataclasses make up"
+def test_classes_are_documented() -> None:
+    """Not only with the docstring that dataclasses make up."""
+    bare = [name for name, one in classes().items() if not (one.__doc__ or "").strip()]
+    made_up = [name for name, one in classes().items() if (one.__doc__ or "").startswith(f"{one.__name__}(")]
+    assert not bare + made_up
 
 
-@pytest.mark.parametrize("name", sorted(CALLABLES))
-def test_no_misspelt_keyword_is_swallowed(name: str) -> None:
-    """`**anything` accepts every misspelling in silence; those who need it must refuse an unknown name themselves."""
-    catch_all = [p.name for p in inspect.signature(CALLABLES[name]).parameters.values() if p.kind is p.VAR_KEYWORD]
-    if catch_all:
-        with pytest.raises((pneumo_ros_errors().UsageError, TypeError)):
-            call_with_unknown_keyword(name)
+def test_no_misspelt_keyword_is_swallowed() -> None:
+    """`**anything` accepts every misspelling in silence; functions that need it must refuse an unknown name."""
+    kinds = {name: [p.kind for p in inspect.signature(one).parameters.values()] for name, one in callables().items()}
+    catching = [name for name, found in kinds.items() if inspect.Parameter.VAR_KEYWORD in found]
+    assert not [name for name in catching if not refuses_unknown_keyword(name)]
 
 
-def pneumo_ros_errors() -> Any:
-    """The error classes, imported late so that collection fails in one place only."""
-    return importlib.import_module("pneumo_ros.errors")
+def refuses_unknown_keyword(name: str) -> bool:
+    """Whether a function that takes `**anything` says so when a name is unknown."""
+    try:
+        call_with_unknown_keyword(name)
+    except (UsageError, TypeError):
+        return True
+    return False
 
 
 def call_with_unknown_keyword(name: str) -> None:
-    """Call a function that takes `**anything` with a keyword nobody can mean."""
+    """Call a function that takes `**anything` with a keyword that it cannot know."""
     owner = name.rpartition(".")[0]
     if owner == "pneumo_ros.plant.model.Model":
         from pneumo_ros.plant import load_model
 
         getattr(load_model("axis"), name.rpartition(".")[2])(no_such_keyword=1.0)
     else:
-        CALLABLES[name](no_such_keyword=1.0)
+        callables()[name](no_such_keyword=1.0)
