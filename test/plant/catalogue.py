@@ -19,6 +19,11 @@ CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names()]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")
 
+LONG = {"piston.stroke": 20.0, "chambers.volume_a": 0.02, "chambers.volume_b": 0.02}
+HARDLY_A_BRISTLE = {
+    "lugre_friction.static_friction": 1e-3, "lugre_friction.coulomb_friction": 1e-3,
+    "lugre_friction.bristle_stiffness": 1e3, "lugre_friction.bristle_damping": 0.0,
+}  # fmt: skip
 _READ_BY_BRISTLES = {"friction_scale", "friction_rise", "static_rise", "slip", "stribeck"}
 _RANGES = {  # by unit: where the random values of states and signals lie
     "V": (-10.0, 10.0), "s": (0.0, 1e3), "Pa": (5e4, 1e6), "kg/s": (-0.02, 0.02), "m3": (0.0, 1e-4),
@@ -108,6 +113,31 @@ def lone_machine(name: str) -> Model:
         except UsageError:
             continue
     return machine(name)
+
+
+@cache
+def everything() -> Model:
+    """The axis with every effect there is: one kernel, in which any effect can be looked at alone."""
+    return AXIS.with_effects([*AXIS.effects, *(e.name for e in CATALOGUE if e.name not in AXIS.effects)])
+
+
+@cache
+def in_one_kernel(name: str) -> Model:
+    """The machine with the effect, as `machine` makes it, by the kernel of everything: all others are at neutral."""
+    others = {key: value for effect in CATALOGUE for key, value in neutral_values(effect).items()}
+    own = machine(name).parameters
+    here = {key: value for key, value in own.items() if key.partition(".")[0] in (name, *AXIS.effects)}
+    return everything().with_parameters({**others, **here})
+
+
+@cache
+def driven_in_one_kernel(name: str) -> Model:
+    """`lone_machine` by the kernel of everything: hardly a bristle where the effect needs none, and no stop near."""
+    others = {key: value for effect in CATALOGUE for key, value in neutral_values(effect).items()}
+    own = {key: value for key, value in machine(name).parameters.items() if key.partition(".")[0] == name}
+    written = {w for function in EFFECTS[name].functions.values() for w in function.writes}
+    bristle = {} if name == "lugre_friction" or written & _READ_BY_BRISTLES else HARDLY_A_BRISTLE
+    return everything().with_parameters({**others, **bristle, **LONG, **own})
 
 
 @cache

@@ -139,3 +139,10 @@ def check_leak_is_closed(effect: type[Effect]) -> None:
         values = effect_function(effect, "equations")(**given)
         flows = dict(zip(equations.writes, values if isinstance(values, tuple) else (values,), strict=True))
         assert flows.get("flow_a", 0.0) == -flows.get("flow_b", 0.0), given
+
+
+def bounded(model: Model, step: float, voltage: np.ndarray) -> bool:
+    """Whether a long step finds nothing that a short one does not; what both find extreme may be extreme."""
+    start = model.state(p_a=3e5, p_b=4e5)
+    coarse, fine = (np.abs(model.simulate(voltage, start, step=h)).max(axis=0) for h in (step, 2e-6))
+    return bool(np.all(coarse <= 3.0 * fine + 1e-6))

@@ -5,12 +5,11 @@ All are found automatically: a new file in the catalogue is tested as soon as it
 
 import pytest
 from plant import checks
-from plant.catalogue import CATALOGUE, EFFECTS, machine, meaning
+from plant.catalogue import CATALOGUE, EFFECTS, machine, meaning, neutral_values
 from plant.units import AWARE, quantity, unit
 
 from pneumo_ros.plant.signals import SIGNALS
 
-pytestmark = pytest.mark.usefixtures("compiling")
 every_effect = pytest.mark.parametrize("name", EFFECTS)
 every_listed_effect = pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE])
 
@@ -57,3 +56,15 @@ def test_gas_flows_from_high_to_low_pressure(name: str) -> None:
 @every_listed_effect
 def test_leak_between_chambers_loses_nothing(name: str) -> None:
     checks.check_leak_is_closed(EFFECTS[name])
+
+
+def test_what_may_be_missing_in_a_machine_has_a_neutral_value() -> None:
+    """All but what every machine has, and what has no parameter to turn down."""
+    without = {effect.name for effect in CATALOGUE if not neutral_values(effect)}
+    assert without == {"arctan_flow", "end_stop", "lugre_friction", "rod_atmospheric_force"}
+
+
+@every_listed_effect
+def test_what_is_switched_on_without_values_is_felt(name: str) -> None:
+    values = neutral_values(EFFECTS[name])
+    assert not values or any(machine(name).parameters[key] != value for key, value in values.items())

@@ -1,6 +1,6 @@
-"""Every effect in a running kernel: composed, compiled, equal to plain Python, dissipative, switched on and off.
+"""Every effect in a kernel of its own, as a machine has it: compiled, equal to plain Python, dissipative, switched.
 
-Last effect first: meanwhile another process compiles from the first one on.
+A hundred kernels take minutes to compile; `test_effects_one_kernel.py` asks the same of one kernel of all effects.
 """
 
 import numpy as np
@@ -20,8 +20,8 @@ from plant.catalogue import (
 
 from pneumo_ros.plant import Model, Stepper
 
-pytestmark = pytest.mark.usefixtures("compiling")
-every_effect = pytest.mark.parametrize("name", [effect.name for effect in reversed(CATALOGUE)])
+pytestmark = pytest.mark.check
+every_effect = pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE])
 VOLTAGE = np.repeat(np.random.default_rng(4).uniform(-10.0, 10.0, 12), 5)
 
 
@@ -44,7 +44,7 @@ def test_compiled_equals_python_to_the_bit(name: str) -> None:
     assert compiled.tobytes() == run(in_python(machine(name))).tobytes()
 
 
-@pytest.mark.parametrize("name", [effect.name for effect in reversed(CATALOGUE) if neutral_values(effect)])
+@pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE if neutral_values(effect)])
 def test_neutral_parameters_change_nothing(name: str) -> None:
     """At its neutral values an effect is there and not felt: in no state and no signal, exactly or to rounding."""
     present = machine(name).with_parameters(neutral_values(EFFECTS[name]))
@@ -56,32 +56,13 @@ def test_neutral_parameters_change_nothing(name: str) -> None:
         assert felt[signal] == pytest.approx(usual[signal], rel=1e-9, abs=1e-9 * np.abs(usual[signal]).max()), signal
 
 
-def test_what_may_be_missing_in_a_machine_has_a_neutral_value() -> None:
-    """All but what every machine has, and what has no parameter to turn down."""
-    without = {effect.name for effect in CATALOGUE if not neutral_values(effect)}
-    assert without == {"arctan_flow", "end_stop", "lugre_friction", "rod_atmospheric_force"}
-
-
-@every_effect
-def test_what_is_switched_on_without_values_is_felt(name: str) -> None:
-    values = neutral_values(EFFECTS[name])
-    assert not values or any(machine(name).parameters[key] != value for key, value in values.items())
-
-
-def bounded(model: Model, step: float) -> bool:
-    """Whether a long step finds nothing that a short one does not; what both find extreme may be extreme."""
-    start = model.state(p_a=3e5, p_b=4e5)
-    coarse, fine = (np.abs(model.simulate(VOLTAGE, start, step=h)).max(axis=0) for h in (step, 2e-6))
-    return bool(np.all(coarse <= 3.0 * fine + 1e-6))
-
-
 @every_effect
 def test_any_parameters_keep_every_step_stable(name: str) -> None:
     random = seeded(name)
     for values in [{}, *(checks.own_values(EFFECTS[name], random) for _ in range(10))]:
         extreme = values and name in AXIS.effects  # a bristle a million times stiffer than its friction needs 1e-4
         for step in (1e-4,) if extreme else (1e-4, 5e-4):
-            assert bounded(machine(name).with_parameters(values), step), (step, values)
+            assert checks.bounded(machine(name).with_parameters(values), step, VOLTAGE), (step, values)
 
 
 @every_effect
@@ -98,6 +79,6 @@ def test_switched_on_and_off_under_way(name: str) -> None:
     assert stepper.time == pytest.approx(0.15)
 
 
-@pytest.mark.parametrize("name", [effect.name for effect in reversed(CATALOGUE) if moves_piston(effect)])
+@pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE if moves_piston(effect)])
 def test_friction_and_loads_give_no_energy(name: str) -> None:
     checks.check_dissipation(lone_machine(name), EFFECTS[name])

@@ -1,22 +1,15 @@
 """All effects of the catalogue in one kernel: it compiles, neutral effects vanish, lanes advance side by side."""
 
 import re
-from functools import cache
 
 import numpy as np
 import pytest
-from plant.catalogue import AXIS, CATALOGUE, in_python, neutral_values
+from plant.catalogue import AXIS, CATALOGUE, everything, in_python, neutral_values
 from plant.checks import own_values
 
 from pneumo_ros.plant import Model
 
 VOLTAGE = np.repeat([4.0, -3.0, 0.0, 6.0, -8.0, 1.2], 60)
-
-
-@cache
-def everything() -> Model:
-    """The axis with every effect there is."""
-    return AXIS.with_effects([*AXIS.effects, *(e.name for e in CATALOGUE if e.name not in AXIS.effects)])
 
 
 def starts(count: int) -> np.ndarray:
