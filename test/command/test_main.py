@@ -30,7 +30,7 @@ def test_help_lists_every_verb_with_one_line(arguments: tuple[str, ...], capsys:
 
 
 def test_every_verb_module_is_listed() -> None:
-    folder = Path(main.__file__).parent
+    folder = Path(main.__file__).parent / "verb"
     has_verb = {path.stem for path in folder.glob("*.py") if "def add_arguments(" in path.read_text(encoding="utf-8")}
     assert has_verb == set(main.VERBS)
 
