@@ -1,9 +1,11 @@
 # make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
-# make test   lint, types and tests, as continuous integration runs them
+# make test   lint, types and tests: less than 8 minutes on two cores
+# make check  what takes longer and breaks rarely: make slow, supply and pythons; WITHIN=600 stops after so many seconds
 # make bench  print the tables of benchmarks/
 # make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
 # make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
 # make endurance  24 h of simulated and 20 min of real time; ENDURANCE="--hours 1 --minutes 2" for less
+# make slow       the tests that make test leaves out: colcon, installed wheels, full disks, whole diagnoses of a rig
 # make supply     wheel and archive installed and run in empty environments, licences; PYTHONS="python3.10 python3.13"
 # make pythons    the tests that compute on Python 3.10 and 3.13 as well, where they are installed
 #
@@ -40,7 +42,7 @@ ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
 endif
 
-.PHONY: help demo test bench fuzz chaos endurance supply pythons clean
+.PHONY: help demo test check slow bench fuzz chaos endurance supply pythons clean
 .DELETE_ON_ERROR:
 
 help:
@@ -59,10 +61,16 @@ demo: $(READY) | .cache/tmp
 
 test: $(READY) | .cache/tmp
 	@tools/chromium
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/mypy
-	@tools/run_tests $(BIN)/python $(PYTEST)
+	@tools/timed "ruff check" $(BIN)/ruff check .
+	@tools/timed "ruff format" $(BIN)/ruff format --check .
+	@tools/timed mypy $(BIN)/mypy
+	@tools/timed tests tools/run_tests $(BIN)/python $(PYTEST)
+
+check:
+	@tools/check $(MAKE) $(WITHIN)
+
+slow: $(READY) | .cache/tmp
+	@tools/timed "slow tests" tools/run_tests --check $(BIN)/python $(PYTEST)
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done

@@ -5,7 +5,7 @@ to the first that fails; a failure counts when the same test passes without the 
 commit and fault: a call that ran out of time is continued by the next. Give the options with which `make test` calls
 pytest, if it leaves tests out.
 
-    python benchmarks/bench_faults.py [--tree .] [--minutes 20] [--only WORDS] [--pytest "-m 'not long'"]
+    python benchmarks/bench_faults.py [--tree .] [--minutes 20] [--only WORDS] [--pytest "-m 'not check'"]
 """
 
 import argparse

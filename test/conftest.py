@@ -1,8 +1,15 @@
-"""What every test shares: `import rig`, a ROS domain of its own, logs and kernels that stay out of the home folder."""
+"""What every test shares: `import rig`, a ROS domain of its own, logs and kernels that stay out of the home folder.
 
+A test that hangs fails after ten minutes, the longest files of tests begin first, and the end of a run shows the
+seconds of every folder.
+"""
+
+import faulthandler
 import os
+import signal
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,9 +21,23 @@ from pneumo_ros.environment import Domain
 TEST = Path(__file__).parent
 sys.path.insert(0, str(TEST))  # the independent simulator under test/rig imports as `rig`
 
-STATUS = pytest.StashKey[int]()
+STATUS, SCREEN = pytest.StashKey[int](), pytest.StashKey[Any]()
+BOUND = 600.0  # s, for one test with the fixtures that it sets up; the longest takes two minutes on a busy machine
+# Files that take longest, the longest first; one that begins last would keep a single process busy at the end.
+LONGEST = (
+    "ros/test_identification.py", "ros/test_simulator.py", "runs/test_sensors.py", "command/test_unfit.py",
+    "command/test_diagnose.py", "workbench/test_story.py", "workbench/test_plots.py", "workbench/test_jobs.py",
+    "report/test_diagnosis.py", "ros/test_stack.py", "ros/test_chaos.py", "experiment/test_separate.py",
+    "workbench/test_live.py", "ros/test_safety.py", "ros/test_live_round.py", "ros/test_recorder.py",
+    "test_rig_recordings.py", "test_rig_effects.py", "shooting/test_refit_added.py", "diagnose/test_adding.py",
+    "diagnose/test_timing.py", "reading/test_plausible.py",
+)  # fmt: skip
 
-# Before anything imports rclpy: nodes of this session, here and in child processes, see each other and nobody else.
+# A script's `make test &`, nohup and cron let their children ignore SIGINT: tests that send one would wait for ever.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Before anything imports rclpy: nodes of this process, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()
 os.environ.update(DOMAIN.environment)
 os.environ.setdefault("FASTDDS_DEFAULT_PROFILES_FILE", str(TEST / "ros" / "quick_discovery.xml"))
@@ -25,6 +46,44 @@ os.environ["ROS_LOG_DIR"] = LOGS.name
 os.environ.setdefault("PNEUMO_KERNELS", str(TEST.parent / ".cache" / "kernels"))
 # The wheels start Python a second time to find their libraries; a Python of another environment must do so itself.
 os.environ.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[SCREEN] = os.fdopen(os.dup(2), "w")  # while a test runs, pytest keeps what is written to 2
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    rank = {TEST / name: k for k, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path, len(rank)))
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """After its bound a test fails; one that Python cannot interrupt then ends its process, and with it the run."""
+    screen = item.config.stash[SCREEN]
+
+    def fail(*_: object) -> None:
+        faulthandler.dump_traceback(file=screen)
+        pytest.fail(f"not done after {BOUND:g} s; the stacks of all threads are on stderr")
+
+    usual = signal.signal(signal.SIGALRM, fail)
+    signal.setitimer(signal.ITIMER_REAL, BOUND, BOUND / 10.0)  # again, where a fixture hangs at its end
+    faulthandler.dump_traceback_later(2.0 * BOUND, exit=True, file=screen)
+    yield
+    faulthandler.cancel_dump_traceback_later()
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.signal(signal.SIGALRM, usual)
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Seconds of the tests of every folder."""
+    seconds: Counter[str] = Counter()
+    for report in (one for kind in ("passed", "failed", "skipped", "") for one in terminalreporter.getreports(kind)):
+        seconds[report.nodeid.partition("::")[0].rpartition("/")[0]] += getattr(report, "duration", 0.0)
+    if sum(seconds.values()) > 60.0:
+        terminalreporter.write_sep("=", "seconds of each folder")
+        for folder, total in seconds.most_common():
+            terminalreporter.write_line(f"{total:7.1f} s  {folder}")
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:

@@ -34,11 +34,13 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, dict[str
     return folder / "out", done.stdout, json.loads((folder / "demo.json").read_text())
 
 
+@pytest.mark.check
 def test_all_nodes_ended_well(shown: tuple[Path, str, dict[str, Any]]) -> None:
     assert shown[2]["exit_codes"] == {"recorder": 0, "simulator": 0, "controller": 0}
     assert "Exit codes: recorder 0, simulator 0, controller 0" in shown[1]
 
 
+@pytest.mark.check
 def test_the_bag_holds_what_the_contract_names(shown: tuple[Path, str, dict[str, Any]]) -> None:
     recording = read_recording(shown[0] / "bag")
     assert recording.namespace == "demo"
@@ -51,6 +53,7 @@ def test_the_bag_holds_what_the_contract_names(shown: tuple[Path, str, dict[str,
         assert f"/demo/{topic} " in shown[1]
 
 
+@pytest.mark.check
 def test_the_piston_went_where_it_was_sent(shown: tuple[Path, str, dict[str, Any]]) -> None:
     position = read_recording(shown[0] / "bag").position
     assert position.max() > 0.08
@@ -58,6 +61,7 @@ def test_the_piston_went_where_it_was_sent(shown: tuple[Path, str, dict[str, Any
     assert "Distance from the reference at the end of each step:" in shown[1]
 
 
+@pytest.mark.check
 def test_both_comparisons_are_reported(shown: tuple[Path, str, dict[str, Any]]) -> None:
     data = shown[2]
     for key in ("own", "other"):
@@ -68,6 +72,7 @@ def test_both_comparisons_are_reported(shown: tuple[Path, str, dict[str, Any]]) 
     assert "The model against a recording it did not make" in shown[1]
 
 
+@pytest.mark.check
 def test_what_the_other_simulator_hid_is_found(shown: tuple[Path, str, dict[str, Any]]) -> None:
     data = shown[2]
     assert data["seed"] == SEED
@@ -81,6 +86,7 @@ def test_what_the_other_simulator_hid_is_found(shown: tuple[Path, str, dict[str,
     assert HIDDEN in (shown[0] / "report.html").read_text()
 
 
+@pytest.mark.check
 def test_the_truth_comes_last(shown: tuple[Path, str, dict[str, Any]]) -> None:
     before, verb, after = shown[1].partition("pneumo_ros diagnose ")
     assert verb

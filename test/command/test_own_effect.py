@@ -47,6 +47,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.check
 def test_it_is_found_missing(folder: Path) -> None:
     done = pneumo(
         "diagnose", "fast", "far", "--holdout", "holdout", "--json", "d.json", "--out", "found.yaml", folder=folder

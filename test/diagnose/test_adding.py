@@ -42,6 +42,7 @@ def added() -> Adding:
     return add(load_model(), ["constant_load"], [train], [held])
 
 
+@pytest.mark.check
 def test_the_rigs_load_is_fitted_and_pays_on_a_run_held_out() -> None:
     found = added()
     own = found.estimates["constant_load.load"]
@@ -56,6 +57,7 @@ def test_the_rigs_load_is_fitted_and_pays_on_a_run_held_out() -> None:
     assert isinstance(found.after, Comparison)
 
 
+@pytest.mark.check
 def test_what_the_model_has_is_estimated_against_what_was_known() -> None:
     one = added().estimates["lugre_friction.static_friction"]
     assert one.before == load_model()["lugre_friction.static_friction"]

@@ -39,6 +39,7 @@ def outcome_of(folder: Path, seed: int, *hidden: str) -> Outcome:
     return diagnose(load_model("axis"), [runs[name] for name in TRAIN], [runs[name] for name in HELD])
 
 
+@pytest.mark.check
 @pytest.mark.parametrize(
     ("seed", "hidden", "parameter", "equation"),
     [
@@ -67,6 +68,7 @@ def test_nothing_is_added_to_a_healthy_machine(tmp_path: Path) -> None:
     assert outcome.verdict == "adequate"
 
 
+@pytest.mark.check
 def test_what_no_catalogue_has_is_not_called_adequate(tmp_path: Path) -> None:
     outcome = outcome_of(tmp_path, 24, "detent_force=15")
     assert outcome.verdict == "unknown_effect"

@@ -61,6 +61,7 @@ def test_an_effect_added_by_name_is_timed_too_and_says_so() -> None:
     assert found.after.equations["momentum"].explained_by_noise
 
 
+@pytest.mark.check
 def test_a_delay_that_is_to_be_added_is_left_to_the_effect() -> None:
     found = add(AXIS, ["position_sensor_delay"], [run(0.8e-3)])
     assert found.late == 0.0

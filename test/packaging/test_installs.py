@@ -18,6 +18,7 @@ CONFIG = sorted(path.relative_to(ROOT / "pneumo_ros") for path in (ROOT / "pneum
 LAUNCH = sorted(path.name for path in (ROOT / "launch").glob("*.launch.py"))
 URDF = sorted(path.name for path in (ROOT / "urdf").glob("*.xacro"))
 EXECUTABLES = ("pneumo", "simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
+pytestmark = pytest.mark.check
 # A child must find its own libraries, not those of this session's environment
 CLEAN = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH")}
 
@@ -46,10 +47,6 @@ def wheel(tree: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     run(sys.executable, "-m", "pip", *arguments, folder=folder)
     (built,) = folder.glob("*.whl")
     return built
-
-
-def test_config_is_found_at_the_top_too() -> None:
-    assert (ROOT / "config" / "axis.yaml").samefile(ROOT / "pneumo_ros" / "config" / "axis.yaml")
 
 
 def test_the_wheel_carries_machine_files_and_share(wheel: Path) -> None:

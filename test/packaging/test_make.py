@@ -1,6 +1,7 @@
 """What make says when this machine lacks something, without installing anything."""
 
 import os
+import re
 import shutil
 import stat
 import subprocess
@@ -75,17 +76,56 @@ def test_make_alone_says_what_there_is() -> None:
         [make, "--no-print-directory"], cwd=ROOT, capture_output=True, text=True, env=dict(os.environ)
     )
     assert done.returncode == 0
-    for target in ("make demo", "make test", "make bench", "make fuzz", "make chaos", "make endurance", "make supply"):
-        assert target in done.stdout
+    for target in ("demo", "test", "check", "slow", "bench", "fuzz", "chaos", "endurance", "supply", "pythons"):
+        assert f"make {target} " in done.stdout
 
 
 def test_continuous_integration_runs_what_a_developer_runs() -> None:
     script = ROOT / ".ci" / "run"
     assert os.access(script, os.X_OK)
     assert "\nmake test\n" in script.read_text()
+    assert "\nmake check " in script.read_text()
 
 
-def test_other_pythons_are_told_of_where_there_are_none(tmp_path: Path) -> None:
+def tool(name: str, *arguments: str | Path) -> "subprocess.CompletedProcess[str]":
+    """A script of tools/."""
+    return subprocess.run([ROOT / "tools" / name, *arguments], cwd=ROOT, capture_output=True, text=True)
+
+
+def test_tests_that_fail_are_an_error(machine: Path) -> None:
+    program(machine, "python", 'echo "$@"; exit 3')
+    everything = tool("run_tests", machine / "python", "-k", "bags")
+    assert everything.returncode == 3
+    assert "-m not check" in everything.stdout
+    assert "-m check" in tool("run_tests", "--check", machine / "python").stdout
+    assert "--ignore=test/ros" in tool("run_tests", "--computing", machine / "python").stdout
+    assert tool("run_tests", machine / "python", "test/api").stdout == "-m pytest test/api\n"
+
+
+def test_a_stage_keeps_its_exit_code(machine: Path) -> None:
+    program(machine, "fails", "exit 7")
+    done = tool("timed", "types", machine / "fails")
+    assert done.returncode == 7
+    assert re.fullmatch(r"\[types: \d+ s\]\n", done.stdout)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds", "code", "said"),
+    [
+        ("exit 0", [], 0, ""),
+        ('[ "$2" != supply ]', [], 1, "make check: failed: supply\n"),
+        ('[ "$2" != supply ] || exec sleep 30', ["2"], 0, "no time was left to finish: supply pythons\n"),
+        ("exit 0", ["-5"], 0, "no time was left to finish: slow supply pythons\n"),
+    ],
+)
+def test_checks_fail_or_have_no_time(text: str, seconds: list[str], code: int, said: str, machine: Path) -> None:
+    program(machine, "make", text)
+    done = tool("check", machine / "make", *seconds)
+    assert done.returncode == code
+    assert (done.stdout + done.stderr).endswith(said)
+
+
+def test_other_pythons_that_are_not_installed_are_named(tmp_path: Path) -> None:
     done = subprocess.run(
         [str(ROOT / "tools" / "other_pythons"), "make"], cwd=tmp_path, capture_output=True, text=True,
         env={"PATH": str(tmp_path), "PYENV_ROOT": str(tmp_path)},

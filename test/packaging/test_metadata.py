@@ -120,3 +120,7 @@ def test_setup_cfg_holds_only_where_executables_go() -> None:
         "[install]",
         "install_scripts=$base/lib/pneumo_ros",
     ]
+
+
+def test_config_is_found_at_the_top_too() -> None:
+    assert (ROOT / "config" / "axis.yaml").samefile(ROOT / "pneumo_ros" / "config" / "axis.yaml")

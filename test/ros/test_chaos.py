@@ -23,6 +23,7 @@ def test_faults_leave_everything_in_order(tmp_path: Path) -> None:
     assert outcome.recorded > 100
 
 
+@pytest.mark.check
 @pytest.mark.parametrize("fault", ["disk full while recording", "disk full of uploads"])
 def test_a_disk_that_fills_up_leaves_what_is_whole(fault: str, tmp_path: Path) -> None:
     faults, without = kinds(tmp_path)
