@@ -34,7 +34,7 @@ class Cascade(ApproachingLaw):
     force_rate = Gain(60.0, "1/s", "K_P, rate at which an error of the force is removed", 0.0, 2000.0)
     correction = Gain(0.1, "1", "kappa, velocity error that bends the bristles of the friction observer", 0.0, 100.0)
     lead = Gain(
-        0.3, "s", "time ahead at which the setpoint tells a piston that sticks whether to wait; 0: never", 0.0, 5.0
+        0.3, "s", "time ahead at which the setpoint decides whether a piston that sticks waits; 0: never", 0.0, 5.0
     )
     learning = Gain(10.0, "1/s", "rate at which scale of friction and load are learnt while sliding", 0.0, 1000.0)
 

@@ -5,7 +5,7 @@ import math
 
 
 class StateEstimator:
-    """Kalman filter of y, v and f, the specific force that pressures do not tell (friction and load), a random walk:
+    """Kalman filter of y, v and f, the specific force that pressures do not show (friction and load), a random walk:
 
         y' = v,    v' = u + f,    f' = white noise of density q,    u = (A_a p_a - A_b p_b - F_atm) / M
 
@@ -23,7 +23,7 @@ class StateEstimator:
         self.reset()
 
     def reset(self) -> None:
-        """Start anew at the next sample, at rest."""
+        """Start again at the next sample, at rest."""
         self.position = self.velocity = self.unmeasured = self.known = 0.0
         self._started, self._design = False, (0.0, 0.0)
         self._gains = (1.0, 0.0, 0.0)

@@ -6,7 +6,7 @@ from pneumo_ros.control.machine import Machine
 
 SMALLEST = 1e-3  # N, least friction level that is divided by
 HEADROOM = 1.5  # most that a correction may bend the bristles, over what F_s does: F_s may be known too low
-TELLING = 0.02  # m/s, sliding at this speed tells the level; below, the Stribeck curve is too steep
+INFORMATIVE = 0.02  # m/s, sliding at this speed shows the level; below, the Stribeck curve is too steep
 LEAST, MOST = 0.3, 3.0  # range of the learnt scale
 LOADED = 0.5  # largest bias, of the force that the supply can make
 READY = 0.9  # of Coulomb friction: the force of a piston that waits, ready to break away but no nearer to it than that
@@ -31,7 +31,7 @@ class FrictionObserver:
     """
 
     def __init__(self, machine: Machine) -> None:
-        """Take the parameters of `machine`, which may be set anew under way; start with slack bristles."""
+        """Take the parameters of `machine`, which may be replaced between steps; start with slack bristles."""
         self.machine = machine
         self.reset()
 
@@ -82,12 +82,12 @@ class FrictionObserver:
         return self.scale * self.machine.bristle_stiffness * self.z + self.bias + self.running(velocity)
 
     def learn(self, measured: float, velocity: float, share: float) -> None:
-        """Take up `share` of what is lacking to the `measured` friction [N]; only where sliding tells it.
+        """Take up `share` of what is lacking to the `measured` friction [N]; only where sliding shows it.
 
-        Half goes to the scale, half to the bias; motion in both directions tells them apart (normalised least mean
+        Half goes to the scale, half to the bias; motion in both directions distinguishes them (normalised least mean
         squares: B. Widrow and S. D. Stearns, Adaptive Signal Processing, 1985).
         """
-        if self.sliding and abs(velocity) > TELLING:
+        if self.sliding and abs(velocity) > INFORMATIVE:
             bristles, level = self.machine.bristle_stiffness * self.z, self.level(velocity)
             lacking = share * (measured - self.force(velocity)) / (bristles * bristles + level * level)
             self.scale = min(max(self.scale + lacking * bristles, LEAST), MOST)

@@ -17,7 +17,7 @@ class VelocityEstimator:
         self.reset()
 
     def reset(self) -> None:
-        """Start anew at the next sample, at rest."""
+        """Start again at the next sample, at rest."""
         self._time, self.position, self.velocity = -math.inf, 0.0, 0.0
 
     def update(self, time: float, position: float) -> float:

@@ -15,7 +15,7 @@ _FILES = (".mcap", ".db3")
 
 
 class Campaign(NamedTuple):
-    """Recordings of one machine that are taken for one state of it; `start` [ns since the epoch] of the first."""
+    """Recordings of one machine, which count as one state of it; `start` [ns since the epoch] of the first."""
 
     machine: str
     name: str
@@ -25,7 +25,7 @@ class Campaign(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What tells it from all others in the folder."""
+        """What distinguishes it from all others in the folder."""
         return f"{self.machine}/{self.name}"
 
     @property

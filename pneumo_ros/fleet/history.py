@@ -9,8 +9,8 @@ from typing import Any
 Examined = dict[str, Any]  # machine, campaign, date, and the result of `examine`
 
 ALARM = 0.01  # chance that anything is said to drift in a fleet where nothing does
-MATERIAL = 0.03  # of a value: a machine that is taken apart by nobody repeats its friction no better (EMPS: 3 %)
-ENOUGH = 8  # changes from campaign to campaign, over the fleet, that tell how well machines repeat themselves
+MATERIAL = 0.03  # of a value: an untouched machine repeats its friction no better than this (EMPS: 3 %)
+ENOUGH = 8  # changes from campaign to campaign, over the fleet, that show how well machines repeat themselves
 _NORMAL, _MAD = 1.96, 1.4826  # deviations: of half a 95 % interval, and of a median of magnitudes
 
 

@@ -9,7 +9,7 @@ is a Stormer-Verlet step (Hairer, Lubich, Wanner 2006, ch. I.1.4) made exponenti
 
 It is of second order and time-symmetric for elastic parts (no artificial damping or growth below omega h = 2). Where
 der_x = source - rate x, a state moves by the exact solution for constant source and rate; half steps and velocities
-take a rational stand-in (`maths.damped`) that decays likewise. Both are stable for any rate h.
+take a rational approximation (`maths.damped`) that decays likewise. Both are stable for any rate h.
 """
 
 import builtins

@@ -36,7 +36,7 @@ def _writable_folder() -> Path:
                 f"PNEUMO_KERNELS={folder} cannot be written ({error.strerror}); name a folder that can"
             ) from error
         other = Path(tempfile.mkdtemp(prefix="pneumo_kernels_"))
-        _log.warning("%s cannot be written; kernels are compiled anew in %s", folder, other)
+        _log.warning("%s cannot be written; kernels are compiled again in %s", folder, other)
         return other
 
 

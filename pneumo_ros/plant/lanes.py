@@ -39,7 +39,7 @@ def _share(part: Callable[[slice], None], count: int, threads: int) -> None:
 
 @cache
 def _pool(process: int) -> "ThreadPoolExecutor":
-    """Threads that are kept: thousands of short calls would start them anew. A forked process has none of its own."""
+    """Threads that are kept: thousands of short calls would start new ones each time. A forked process has none."""
     from concurrent.futures import ThreadPoolExecutor  # slow to import
 
     return ThreadPoolExecutor(os.cpu_count())
@@ -76,7 +76,7 @@ def fitting(
 
     What all lanes share may come without its first axis. Raises UsageError for shapes that do not fit.
     """
-    # the kernel would compile anew for arrays that are read-only or not contiguous
+    # the kernel would be compiled again for arrays that are read-only or not contiguous
     given, tail, q = (np.require(a, float, ["C", "W"]) for a in (measured, rest, parameters))
     lanes = q.shape[:1]
     fits = given.ndim in (2, 3) and given.shape[:-2] in ((), lanes) and given.shape[-1] == frame

@@ -40,7 +40,7 @@ def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
 
 
 def effects_of_file(path: str) -> Mapping[str, type[Effect]]:
-    """The effects of a user's Python file (it is executed: name only files you trust), anew after an edit.
+    """The effects of a user's Python file (it is executed: name only files you trust), again after an edit.
 
     Raises UsageError when the file is missing, does not run, or holds no effect.
     """
@@ -59,7 +59,7 @@ def _effects_of_file(path: str, _edited: int) -> Mapping[str, type[Effect]]:
         exec(compile(location.read_bytes(), location, "exec"), vars(module))
     except UsageError as error:
         raise UsageError(f"effects file {path}: {error}") from error
-    except Exception as error:  # whatever a user's file raises is told, not thrown
+    except Exception as error:  # whatever a user's file raises becomes a sentence
         raise UsageError(f"effects file {path} does not run: {type(error).__name__}: {error}") from error
     found = effects_in(module)
     if not found:

@@ -90,7 +90,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
 
 
 def _number(value: object) -> object:
-    """YAML 1.1 reads 7e5 as text, ROS as a number: take it for the number it is meant to be."""
+    """YAML 1.1 reads 7e5 as text, ROS reads a number: text that is a number becomes that number."""
     if isinstance(value, str):
         try:
             return float(value)
@@ -101,7 +101,7 @@ def _number(value: object) -> object:
 
 def machine_text(model: Model) -> str:
     """The machine file of a model, with unit and meaning beside every value."""
-    effects = ", ".join(model.effects) or '""'  # ROS cannot tell the type of an empty list
+    effects = ", ".join(model.effects) or '""'  # ROS cannot know the type of an empty list
     lines = ["/**:", "  ros__parameters:", f"    effects: [{effects}]"]
     section = ""
     for dotted, value in model.parameters.items():

@@ -1,4 +1,4 @@
-"""What the sensors read along simulated states: the states themselves, unless an effect stands in between."""
+"""What the sensors read along simulated states: the states themselves, unless an effect changes the reading."""
 
 from typing import TYPE_CHECKING
 

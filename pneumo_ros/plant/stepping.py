@@ -1,4 +1,4 @@
-"""Write one step of the integrator, whose scheme is told in `compose`."""
+"""Write one step of the integrator, whose scheme is described in `compose`."""
 
 from typing import TYPE_CHECKING
 

@@ -1,6 +1,6 @@
 """Parts of a run in which nothing happens that should: a piston that is stuck, a sensor that hangs, dead commands.
 
-All of them leave a run usable, so they are notes, but for a pressure sensor that shows no motion at all.
+All of them leave the run usable, so they are notes. A pressure sensor that shows no motion at all is an error.
 """
 
 from collections.abc import Iterator
@@ -15,14 +15,17 @@ from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
-LONG = 5.0  # s: a running axis waits shorter for its breakaway, but for voltages at the edge of the dead zone
+LONG = 5.0  # s: a running axis breaks away sooner, except for voltages at the edge of the dead zone
 _BLOCK = 0.05  # s
 _STILL = 1e-4  # m that bristles and noise move a piston at rest
-# times what fills a chamber from the atmosphere to the supply: 0.3 breaks a piston away, but a valve that is off by
-# 0.3 V lets 0.13 pass in each second without the model's knowing
+# times the air that fills a chamber from the atmosphere to the supply: 0.3 breaks a piston away, but a valve that
+# differs by 0.3 V from the model lets 0.13 more pass in each second
 _FILLS, _LATER, _FEWER = 1.2, 8.0, 0.6  # after LONG, and after so many s
 _EDGE = 2e-3  # m from the end of the stroke
-_HANGS, _SLOWEST = 1.0, 5e-3  # s of one value where noise would change it; s between samples that tell noise apart
+_HANGS, _SLOWEST = (
+    1.0,
+    5e-3,
+)  # s of one value where noise would change it; s between samples: only faster ones show noise
 _TRAVEL = 0.05  # m both ways
 _FLAT = 1.5  # noise deviations that a pressure sensor shows although nothing reaches it
 _UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}

@@ -1,7 +1,7 @@
-"""Whether a run can be what it says it is: mistakes of wiring, signs and gauge pressures, which the model tells apart.
+"""Whether a run can be what it says it is: mistakes of wiring, signs and gauge pressures, distinguished by the model.
 
-Each mistake is undone on trial. When that makes the residuals of the equations several times smaller, it was made: no
-effect that a model may lack does the same (see the tests, which hide every known one).
+Each mistake is undone on trial. When that makes the residuals of the equations several times smaller, the mistake was
+made: no effect that a model may lack does the same (see the tests, which hide every known one).
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from pneumo_ros.reading.idle import idle_notes
 from pneumo_ros.runs.run import Run
 
 _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
-_GROWS = 1.5  # times larger residuals of a chamber, that disprove it: hidden friction or a closed valve looked like it
+_GROWS = 1.5  # times larger residuals of a chamber disprove it: hidden friction or a closed valve only looked like it
 _POOR = 0.2  # share of a signal's size from which on a residual is worth asking what is wrong
 _MOVES = 0.01  # m, without which leaks look like an exchange or a reversal
 _VENTED = 0.5  # of the atmosphere's pressure: no running axis has an emptier chamber

@@ -11,7 +11,7 @@ def recordings_in(folder: Path) -> list[Path]:
         return []
     entries = sorted(folder.iterdir())
     folders = [entry for entry in entries if entry.is_dir() and _holds_files(entry)]
-    if not folders:  # one recording whose recorder was killed, or nothing; reading tells
+    if not folders:  # one recording whose recorder was killed, or nothing; reading it shows which
         return []
     return sorted([*folders, *(entry for entry in entries if entry.suffix in _FILES)])
 

@@ -66,7 +66,7 @@ class GrowingFile:
 
     def _restore(self) -> None:
         """Put the end back where it was: that room on the disk is taken already."""
-        with suppress(OSError):  # a disk that fails in another way: the first failure is what is told
+        with suppress(OSError):  # a disk that fails in another way: the first failure is the one reported
             _write_at(self._descriptor, bytearray(self.END), self._settled)
             os.ftruncate(self._descriptor, self._settled + len(self.END))
 

@@ -108,7 +108,7 @@ class McapFile:
         whole = len(data) == size
         if content + packed <= stop and not (whole and (not checksum or zlib.crc32(data) == checksum)):
             self._damaged += 1
-            if whole:  # something in it is wrong, and nothing tells what
+            if whole:  # something in it is wrong, and no more is known
                 return
         yield self._block(data, self._walk(data))
 

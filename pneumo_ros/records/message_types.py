@@ -16,7 +16,7 @@ from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Channel
 
-ENCAPSULATION = 4  # bytes before a message that tell its byte order
+ENCAPSULATION = 4  # bytes before a message that give its byte order
 MOST_VALUES = 10_000  # of a message; more are nested so that a short definition fills any memory
 _IDL_PART = "=" * 80 + "\nIDL: "
 
@@ -112,7 +112,7 @@ def same_fields(given: Typestore, standard: Typestore, message_type: str) -> boo
     """Whether both stores define the same fields for a type and all types within it."""
     inner = [name for name in given.fielddefs if name in standard.fielddefs]
     return message_type in inner and all(
-        str(given.fielddefs[name][1]).replace("'char'", "'uint8'")  # Python's message classes do not tell them apart
+        str(given.fielddefs[name][1]).replace("'char'", "'uint8'")  # Python's message classes do not distinguish them
         == str(standard.fielddefs[name][1]).replace("'char'", "'uint8'")
         for name in inner
     )

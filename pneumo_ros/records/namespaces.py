@@ -26,7 +26,7 @@ def choose_namespace(path: Path, types: dict[str, str], wanted: str | None) -> s
         if wanted.strip("/") not in axes:
             raise DataError(f"{path}: {unknown_name('namespace', wanted, [_shown(name) for name in axes])}")
         return wanted.strip("/")
-    # A robot's own joint states may lie beside those of the axis: pressures tell which is which.
+    # A robot's own joint states may lie beside those of the axis: the pressures show which namespace is the axis.
     likely = [name for name, parts in axes.items() if {contract.PRESSURE_A, contract.PRESSURE_B} <= parts] or list(axes)
     if len(likely) > 1:
         names = ", ".join(_shown(name) for name in sorted(likely))

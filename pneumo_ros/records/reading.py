@@ -65,7 +65,7 @@ def _require(signals: Signals, commands: Series | None, *pressures: Series | Non
 
 
 def _renamed(signals: Signals, absent: list[str]) -> str:
-    """Sentence that tells how to use a topic that was recorded under another name; empty when there is none."""
+    """Sentence that says how to use a topic that was recorded under another name; empty when there is none."""
     others = signals.like(absent[0])
     if not others:
         return ""

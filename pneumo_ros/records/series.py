@@ -88,7 +88,7 @@ def on_clock_of(joint_states: Series, log_time: Integers, warn: Callable[[str], 
     """Recorded times (m,) [ns] on the clock of the stamps of `joint_states`.
 
     Usually that is the same clock. It is not when stamps are simulated time, when a recording is played back, or when
-    another machine's clock is off: then the recorded times of the joint states tell which stamp belongs to which time.
+    another machine's clock is off: then the recorded times of the joint states show which stamp belongs to which time.
     """
     low, high = _apart(joint_states)
     if SAME_CLOCK[0] <= low and high <= SAME_CLOCK[1]:

@@ -89,7 +89,7 @@ def _gauge(unit: str, both: list[Array]) -> bool:
 
 def _advice(unit: str, both: list[Array]) -> str:
     publish = f"multiply {unit} by {PRESSURE_UNITS[unit]:.6g} where it is published"
-    if any(one.max() >= _VACUUM for one in both):  # one in Pa, the other not: no option can tell which
+    if any(one.max() >= _VACUUM for one in both):  # one in Pa, the other not: no option says which
         return publish
     gauge = _gauge(unit, both)
     more = ", and add the atmosphere's 1e5 Pa" if gauge else ""

@@ -33,7 +33,7 @@ def parse_cuts(given: Sequence[str]) -> dict[Path, tuple[Cut, ...]]:
 
 
 def without(run: Run, cuts: Sequence[Cut]) -> Run:
-    """`run` with the samples from `cuts` taken for not measured, as in a gap; DataError when next to none remain."""
+    """`run` with the samples in `cuts` marked as not measured, as in a gap; DataError when too few remain."""
     measured = run.measured.copy()
     for begin, end in cuts:
         measured &= (run.time < begin) | (run.time > end)

@@ -21,7 +21,8 @@ class Capability:
 
     At a steady speed v the filling chamber takes A v p = c (p_s - p), the other gives A v p = d (p - p_atm), with the
     flows c = beta_fill R T atan(k_u u) and d likewise [m3/s] (plant: `arctan_flow` and `chambers` with p' = 0). The
-    share of choked flow is not told apart; a machine without flow coefficients is limited by its pressures alone.
+    share of choked flow is counted as linear flow; a machine without flow coefficients is limited by its pressures
+    alone.
     """
 
     machine: Machine
@@ -63,7 +64,7 @@ class Capability:
         """Force [N] that motions [m/s, m/s2] need beyond what there is; negative where some is left.
 
         While braking hard, the pressures push against the motion: then the force at rest is what there is. At rest
-        nobody can tell a start to one side from the end of a motion to the other: the easier one counts.
+        a start to one side cannot be distinguished from the end of a motion to the other: the easier one counts.
         """
         v, a = np.broadcast_arrays(np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float))
         extending = self._lacking(np.maximum(v, 0.0), a, 1.0)

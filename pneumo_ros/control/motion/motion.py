@@ -22,7 +22,7 @@ class Motion:
     """Where the piston is to be. Nothing that comes in makes the setpoint jump, and it never runs away from the piston.
 
     Times [s] rise from call to call; `measured` [m] is where the piston is. A motion that is `following_error` [m]
-    ahead of the piston begins anew from there, a trajectory is given up; `reason` then says why. The last position of a
+    ahead of the piston restarts from there, a trajectory is given up; `reason` then says why. The last position of a
     stream stands when nothing came for `pause` [s].
     """
 
@@ -55,7 +55,7 @@ class Motion:
     # --- what comes in ----------------------------------------------------------------------------------------------
 
     def aim(self, position: float, velocity: float | None, time: float, measured: float) -> None:
-        """Go to `position` [m], which itself moves at `velocity` [m/s]; None: as told by what was asked for before.
+        """Go to `position` [m], which itself moves at `velocity` [m/s]; None: as the earlier request says.
 
         Raises UsageError, and goes on as before, for a position that is not finite or outside the limits.
         """
@@ -99,7 +99,7 @@ class Motion:
         self._go(Setpoint(measured), time)
 
     def restart(self, time: float, measured: float, reason: str) -> None:
-        """Begin anew from where the piston is: to the same target; a trajectory and a free reference end."""
+        """Restart from where the piston is: to the same target; a trajectory and a free reference end."""
         if self.kind in (Kind.TRAJECTORY, Kind.FREE):
             self.rest(time, measured, reason)
         elif self.kind in (Kind.TARGET, Kind.STREAM):

@@ -32,7 +32,7 @@ def velocity_change(start: Setpoint, velocity: float, acceleration: float, jerk:
 
     Jerk, none, jerk the other way: Lambrechts, Boerlage and Steinbuch, Control Engineering Practice 13 (2005) 145-157,
     sec. 2, from any initial acceleration. The velocity v0 + a0 |a0| / 2j, at which an acceleration that is ended at
-    once leaves the piston, tells which way to push. An initial acceleration beyond the limit is brought back to it.
+    once leaves the piston, shows which way to push. An initial acceleration beyond the limit is brought back to it.
     """
     a0 = start.acceleration
     side = 1.0 if velocity >= start.velocity + a0 * abs(a0) / (2.0 * jerk) else -1.0

@@ -17,7 +17,7 @@ class Profile:
     """
 
     def __init__(self, start: Setpoint, begin: float, target: float, limits: Limits, drift: float = 0.0) -> None:
-        """`drift` beyond 95 % of the limit of speed is taken for that."""
+        """`drift` beyond 95 % of the speed limit counts as 95 %."""
         reach = RESERVE * limits.speed
         self.begin, self.target, self.drift = begin, target, min(max(drift, -reach), reach)
         self._limits = limits

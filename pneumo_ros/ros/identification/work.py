@@ -94,7 +94,7 @@ def read(
 
 
 def main() -> int:
-    """Read the job, do it, tell the result or why there is none."""
+    """Read the job, do it, write the result or why there is none."""
     os.nice(NICE)
     report = Report()
     try:
