@@ -121,7 +121,7 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
 
 
 def _latest(steps: Sequence[Step]) -> list[Candidate]:
-    """Each candidate's candidate in the last round it was tried in; what was added comes first."""
+    """Each candidate as judged in the last round that tried it; what was added comes first."""
     added = [step.added for step in steps if step.added]
     seen = {c.name: c for step in steps for c in step.candidates}
     seen |= {c.name: c for step in steps for c in step.rivals}  # of the round in which they tied

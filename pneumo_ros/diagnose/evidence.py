@@ -2,7 +2,7 @@
 
 Families: the momentum while the piston slides [N], in windows of 100 and 40 ms; the chambers [kg/s], in windows of
 200 and 40 ms; and the breakaways [N], the force at slip against the static friction the model claims there and then.
-They are those of `identify.equations`; each comes with the noise that the sensors alone give it.
+They are those of `equations.equations`; each comes with the noise that the sensors alone give it.
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """Residuals of the model's equations along the measured signals, in weak form: nothing measured is differentiated.
 
-The equations themselves, their noise and where they count are those of `identify.equations`.
+The equations themselves, their noise and where they count are those of `equations.equations`.
 """
 
 from dataclasses import dataclass
