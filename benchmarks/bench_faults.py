@@ -45,20 +45,24 @@ def arguments() -> argparse.Namespace:
 
 def tried(copy: FaultyCopy, fault: Fault) -> Result:
     """Whether, by which test and in which stage a fault is noticed; `noticed` is None when the time was up first."""
-    wordings = fault["find"] if isinstance(fault["find"], list) else [fault["find"]]
+    forms = dict(zip(_listed(fault["find"]), _listed(fault["replace"]), strict=True))
     try:
-        path, text = copy.place_of(wordings)
+        path, text = copy.place_of(tuple(forms))
     except LookupError as error:
         return {"noticed": None, "by": f"no such code: {error}", "stage": "", "seconds": 0.0}
     spent, late = 0.0, False
     for stage, most in STAGES:
         tests = copy.existing(fault.get(stage, ()))
-        noticed, by, seconds = _stage(copy, path, text, fault["replace"], tests, most) if tests else (False, "", 0.0)
+        noticed, by, seconds = _stage(copy, path, text, forms[text], tests, most) if tests else (False, "", 0.0)
         spent += seconds
         if noticed:
             return {"noticed": True, "by": by, "stage": stage, "seconds": round(spent, 1)}
         late |= noticed is None
     return {"noticed": None if late else False, "by": "", "stage": "", "seconds": round(spent, 1)}
+
+
+def _listed(entry: str | list[str]) -> list[str]:
+    return entry if isinstance(entry, list) else [entry]
 
 
 def _stage(

@@ -1,6 +1,6 @@
 """Sweeps over every executor: the same to the bit, nothing lost with a worker, nothing done twice."""
 
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -57,6 +57,24 @@ def test_work_that_kills_every_worker_is_given_up_and_the_rest_is_done(tmp_path:
         found = {d.key: d for d in sweep(dies_always, {name: (str(tmp_path), name) for name in NAMES}, pool)}
     assert found["deadly"].problem == f"its worker died {TRIES} times, as for want of memory"
     assert {key for key, done in found.items() if done.result == key} == set(NAMES) - {"deadly"}
+
+
+def test_work_whose_worker_always_dies_is_tried_three_times() -> None:
+    """Alone each time: an executor that loses every worker gets it as often, and no more."""
+    tried: list[str] = []
+
+    class Deadly(Executor):
+        """Every worker dies at once."""
+
+        def submit(self, work: object, key: str) -> Future[None]:
+            tried.append(key)
+            future: Future[None] = Future()
+            future.set_exception(BrokenExecutor())
+            return future
+
+    (done,) = sweep(str, {"deadly": ("deadly",)}, Pool(Deadly, 1))
+    assert done.problem.startswith(f"its worker died {TRIES} times")
+    assert tried == ["deadly"] * TRIES
 
 
 def test_an_interrupted_sweep_goes_on_with_what_it_had(tmp_path: Path) -> None:
