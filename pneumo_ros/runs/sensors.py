@@ -49,9 +49,10 @@ def driven_lanes(
     """Frame states without what sensors do (lanes, n, 2 or 4), and what `drive` makes along them: states and rates.
 
     The readings r(x) are inverted by the fixed point x = x_measured - (r(x) - x), of two steps at most, which drives
-    the sensors' own states anew each time; the velocity is corrected by the derivative of the correction of position.
+    the sensors' own states again each time; the velocity is corrected by the derivative of the correction of position.
     Each lane stops by itself, when its correction changes by no more than `enough` [m, Pa, Pa]: what it gives does not
-    depend on those beside it. parameters (lanes, parameters), or None for one lane with the model's own.
+    depend on those beside it. A lane that has left the finite numbers comes back as it is. parameters (lanes,
+    parameters), or None for one lane with the model's own.
     """
     count = 1 if parameters is None else len(parameters)
     moving, before = np.arange(count), np.zeros((count, 1, 1))
@@ -60,6 +61,7 @@ def driven_lanes(
     for _ in range(_ITERATIONS):
         shift = taken_back(model, states[moving], None if parameters is None else parameters[moving], run)
         still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
+        still &= np.isfinite(shift).all(axis=(1, 2))
         moving, before = moving[still], shift[still]
         if not len(moving):
             break

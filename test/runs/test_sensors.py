@@ -10,7 +10,7 @@ from rig.effects import Wish, build
 
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.runs.sensors import corrected, driven
+from pneumo_ros.runs.sensors import corrected, driven, driven_lanes
 from pneumo_ros.shooting.refit import Refit, refit
 from pneumo_ros.shooting.segments import cut
 from pneumo_ros.shooting.windows import predict
@@ -148,3 +148,15 @@ def test_time_runs_anew_in_every_recording() -> None:
     segments = cut(model, [run, run], 0.5)
     first, second = segments.simulate(model, segments.guess).reshape(2, 5, *segments.measured.shape[1:2], 5)
     np.testing.assert_allclose(first, second, rtol=1e-9, atol=1e-12)
+
+
+def test_a_lane_that_leaves_the_finite_numbers_comes_back_as_it_is() -> None:
+    """Smoothing its correction raised a ValueError, and one wild parameter ended a whole diagnosis."""
+    model, truth, run = own("steps", seconds=1.0)
+    late = with_effect(model, DELAY, **SIZES[DELAY])
+    wild = np.zeros((1, len(run), len(late.states)))
+    wild[0, -1, late.states.index("behind")] = np.inf
+    parameters, enough = late.values[None], (1e-9, 1e-2, 1e-2)
+    given, states, _ = driven_lanes(late, truth[:, :4], run, parameters, lambda frame, lanes: (wild, wild), enough)
+    assert np.array_equal(given[0], truth[:, :4])
+    assert np.array_equal(states, wild)
