@@ -22,8 +22,8 @@ class Asking:
         from sensor_msgs.msg import JointState
         from std_msgs.msg import Float64
 
+        from pneumo_ros.axis.priority import take_priority
         from pneumo_ros.ros import messages
-        from pneumo_ros.ros.priority import take_priority
         from pneumo_ros.ros.run import make_executor
 
         self._node, self._rate = rclpy.create_node("asking"), rate
@@ -83,7 +83,7 @@ class Asking:
 
 def answers(seconds: float, rate: float) -> None:
     """Print how long valve commands take, law by law, and what the controller needs for it."""
-    from pneumo_ros.ros.controller.settings import LAWS
+    from pneumo_ros.axis.controller.settings import LAWS
 
     asking = Asking(rate)
     print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")

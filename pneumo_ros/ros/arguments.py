@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rclpy.utilities import remove_ros_args
 
-from pneumo_ros.ros.setting import Setting
+from pneumo_ros.axis.setting import Setting
 
 
 @dataclass(frozen=True)

@@ -1,35 +1,15 @@
-"""/diagnostics at 1 Hz: one status per node, from what the node says about itself."""
+"""/diagnostics at 1 Hz: one status per node, from what the node reports about itself."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
+from pneumo_ros.axis.health import Health
+
 PERIOD = 1.0  # s
-
-
-@dataclass
-class Health:
-    """What a node says about itself: numbers by name (units in the names), warnings and errors as sentences."""
-
-    values: Mapping[str, object] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
-    errors: list[str] = field(default_factory=list)
-
-    @property
-    def level(self) -> bytes:
-        """OK, WARN or ERROR of DiagnosticStatus."""
-        if self.errors:
-            return DiagnosticStatus.ERROR
-        return DiagnosticStatus.WARN if self.warnings else DiagnosticStatus.OK
-
-    @property
-    def message(self) -> str:
-        """All sentences, errors first; "running" if there are none."""
-        return "; ".join([*self.errors, *self.warnings]) or "running"
 
 
 class Diagnostics:
@@ -44,7 +24,7 @@ class Diagnostics:
         """Publish now."""
         health = self._health()
         status = DiagnosticStatus(
-            level=health.level,
+            level=_level(health),
             name=self._node.get_fully_qualified_name().lstrip("/"),
             message=health.message,
             hardware_id=self._node.get_namespace(),
@@ -53,6 +33,12 @@ class Diagnostics:
         message = DiagnosticArray(status=[status])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
+
+
+def _level(health: Health) -> bytes:
+    if health.errors:
+        return DiagnosticStatus.ERROR
+    return DiagnosticStatus.WARN if health.warnings else DiagnosticStatus.OK
 
 
 def _text(value: object) -> str:

@@ -11,6 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
+from pneumo_ros.axis.losses import LossCount
 from pneumo_ros.ros.message_classes import message_class
 
 DEPTH = 5000  # messages of one topic that may wait: 5 s at 1 kHz
@@ -27,25 +28,6 @@ class Taken(NamedTuple):
     topic: str
     payload: bytes
     published: int
-
-
-class LossCount:
-    """Counts what is missing between the numbers that each publisher gives its messages."""
-
-    def __init__(self) -> None:
-        self.lost = 0
-        self._last: dict[Hashable, int] = {}
-
-    def note(self, publisher: Hashable, number: int | None) -> None:
-        """A message with `number` arrived from `publisher`; None where the middleware does not number messages."""
-        if number is None:
-            return
-        last = self._last.get(publisher)
-        if last is None or number > last:
-            self._last[publisher] = number
-            self.lost += 0 if last is None else number - last - 1
-        elif number != last:  # it was counted as lost when a later one overtook it
-            self.lost -= 1
 
 
 class Intake:

@@ -21,11 +21,12 @@ from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValu
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.setting import Setting
 from pneumo_ros.errors import UsageError
-from pneumo_ros.ros.diagnostics import Diagnostics, Health
+from pneumo_ros.ros.diagnostics import Diagnostics
 from pneumo_ros.ros.parameters import Parameters
 from pneumo_ros.ros.rivals import Rivals
-from pneumo_ros.ros.setting import Setting
 
 
 class AxisNode(Node):

@@ -2,15 +2,16 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from math import isfinite
 from typing import Any
 
-from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from pneumo_ros.axis.setting import Setting, Value
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
-from pneumo_ros.ros.setting import Setting
 
 _ROS_OWN = ("use_sim_time", "start_type_description_service")
 Values = Mapping[str, Any]
@@ -52,7 +53,7 @@ class Parameters:
             value = setting.coerce(self.given.pop(setting.name, setting.default))
             self._settings[setting.name] = setting
             with self._declaring():
-                self._node.declare_parameter(setting.name, value, setting.descriptor(value), ignore_override=True)
+                self._node.declare_parameter(setting.name, value, descriptor(setting, value), ignore_override=True)
 
     def undeclare(self, names: Iterable[str]) -> None:
         """Forget live parameters that have lost their meaning, as those of an effect that was removed."""
@@ -127,3 +128,19 @@ class Parameters:
     def _take(self, parameters: list[Parameter]) -> None:
         if not self._open:
             self.apply({p.name: p.value for p in parameters if p.name in self._settings})
+
+
+def descriptor(setting: Setting, value: Value) -> ParameterDescriptor:
+    """The ROS descriptor; `value` is the one at the start, which open ranges are made to contain.
+
+    Ranges are finite, because tuning tools draw sliders from them, and continuous (step 0).
+    """
+    described = ParameterDescriptor(description=setting.described, read_only=not setting.live)
+    if type(setting.default) is float:
+        low, high = setting.finite_range(float(value))
+        described.floating_point_range = [FloatingPointRange(from_value=low, to_value=high, step=0.0)]
+    elif type(setting.default) is int and isfinite(setting.low) and isfinite(setting.high):
+        described.integer_range = [IntegerRange(from_value=int(setting.low), to_value=int(setting.high), step=1)]
+    if setting.choices:
+        described.additional_constraints = f"one of: {', '.join(setting.choices)}"
+    return described

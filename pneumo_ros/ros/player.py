@@ -10,18 +10,18 @@ from pathlib import Path
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.playback import Playback
+from pneumo_ros.axis.priority import PRIORITY, take_priority
+from pneumo_ros.axis.setting import Setting
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records import Bag
 from pneumo_ros.records.bag import Message, Overview
 from pneumo_ros.ros.arguments import parse
-from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.outputs import Outputs
-from pneumo_ros.ros.playback import Playback
-from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.run import run
-from pneumo_ros.ros.setting import Setting
 
 CLOCK = "/clock"
 SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let reading ahead delay a message

@@ -14,6 +14,8 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
+from pneumo_ros.ros.message_classes import message_class
+
 _PLAIN = b"\x00\x01"  # encapsulation of little-endian CDR
 _COUNT, _NUMBER, _STAMP = struct.Struct("<I"), struct.Struct("<d"), struct.Struct("<iI")
 _START = 12  # after encapsulation and stamp: the length of header.frame_id
@@ -44,6 +46,19 @@ def pressure(data: bytes) -> float:
         return float(_NUMBER.unpack_from(data, _aligned(_START + 4 + length, 8))[0])
     except Exception:  # likewise
         return math.nan
+
+
+def stamp_of(data: bytes, message_type: str) -> int:
+    """Header stamp [ns] of a serialised message that begins with a header; 0 for bytes that are no such message."""
+    try:
+        if data[:2] == _PLAIN:
+            seconds, nanoseconds = _STAMP.unpack_from(data, 4)
+        else:
+            stamp = deserialize_message(data, message_class(message_type)).header.stamp
+            seconds, nanoseconds = stamp.sec, stamp.nanosec
+    except Exception:  # of struct, or one of the middleware's own: anybody may publish anything
+        return 0
+    return int(seconds) * 1_000_000_000 + int(nanoseconds)
 
 
 class JointReader:

@@ -8,18 +8,18 @@ from pathlib import Path
 
 from rclpy.qos import ReliabilityPolicy
 
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.priority import PRIORITY, take_priority
+from pneumo_ros.axis.setting import Setting
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.records import BagTopic, BagWriter
 from pneumo_ros.records.contract import TYPES
 from pneumo_ros.ros.arguments import parse
-from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.intake import Intake, Taken, latches
 from pneumo_ros.ros.message_classes import definition
 from pneumo_ros.ros.node import AxisNode
-from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.run import run
 from pneumo_ros.ros.selection import Selection
-from pneumo_ros.ros.setting import Setting
 
 TAKE = 0.005  # s between two looks into the queues
 DISCOVER = 0.2  # s between two looks at the publishers

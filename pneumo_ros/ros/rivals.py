@@ -11,13 +11,13 @@ import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
+from pneumo_ros.axis.roles import Claim, Role
 from pneumo_ros.errors import UsageError
-from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros.qos import LATCHED
 
 if TYPE_CHECKING:
@@ -29,26 +29,6 @@ POLL = 0.02  # s between two looks during these times
 PERIOD = 1.0  # s between two looks while the node runs
 UNKNOWN, UNNAMED = "_NODE_NAME_UNKNOWN_", "a program whose name is unknown"  # of rmw; in messages
 CLAIMS = QoSProfile(depth=20, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-class Role(NamedTuple):
-    """A role that one node of a namespace can have; topic names are relative."""
-
-    name: str
-    topics: tuple[str, ...]  # only the node with this role publishes these
-    shared: tuple[str, ...] = ()  # others may publish these for other joints
-
-
-PLANT = Role("plant", (PRESSURE_A, PRESSURE_B), (JOINT_STATES,))
-CONTROLLER = Role("controller", (COMMAND,))
-
-
-class Claim(NamedTuple):
-    """Who has a role since when [ns, system clock]; of two claims the smaller one stays."""
-
-    since: int
-    key: str  # random: two nodes may have the same name and, in theory, the same time
-    node: str
 
 
 class Rivals:

@@ -13,9 +13,9 @@ from rclpy.logging import get_logger
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
+from pneumo_ros.axis.stopping import STOP, listen_for_signals
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.ros.node import AxisNode
-from pneumo_ros.ros.stopping import STOP, listen_for_signals
 
 try:  # twice as fast; part of rclpy since Kilted
     from rclpy.experimental import EventsExecutor

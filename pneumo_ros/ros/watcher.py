@@ -15,6 +15,7 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message
 
+from pneumo_ros.axis.setting import Setting
 from pneumo_ros.records import contract
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.identification.target import Target
@@ -22,7 +23,6 @@ from pneumo_ros.ros.intake import Intake, Taken
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.readers import JointReader, number, pressure
 from pneumo_ros.ros.run import run
-from pneumo_ros.ros.setting import Setting
 
 PERIOD = 0.1  # s between lines
 MOST = 10  # values of a series in a line: 100 Hz are enough for the eye

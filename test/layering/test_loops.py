@@ -7,7 +7,7 @@ import pneumo_ros
 
 PACKAGE = Path(pneumo_ros.__file__).parent
 ENDLESS = {
-    "ros/simulator/compiling.py": "a worker thread: it ends when no model is wanted any more",
+    "axis/simulator/compiling.py": "a worker thread: it ends when no model is wanted any more",
     "ros/controller/action.py": "the event loop of a goal: it ends when the goal is cancelled, or with its time",
 }
 

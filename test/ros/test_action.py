@@ -7,19 +7,19 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from axis.guided import Run
 from builtin_interfaces.msg import Duration
-from ros.guided import Run
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from pneumo_ros.errors import UsageError
-from pneumo_ros.ros.controller import action
-from pneumo_ros.ros.controller.progress import (
+from pneumo_ros.axis.controller.progress import (
     GOAL_TOLERANCE_VIOLATED,
     INVALID_GOAL,
     PATH_TOLERANCE_VIOLATED,
     SUCCESSFUL,
 )
+from pneumo_ros.errors import UsageError
+from pneumo_ros.ros.controller import action
 from pneumo_ros.ros.controller.requests import waypoints_of
 
 

@@ -10,7 +10,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.ros import messages, readers
-from pneumo_ros.ros.experiment.take import stamp_of
+from pneumo_ros.ros.readers import stamp_of
 
 STAMP = 1_795_251_234_567_890_123
 

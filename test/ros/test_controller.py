@@ -188,7 +188,8 @@ def test_it_takes_its_dead_zone_from_a_machine_file_and_refuses_what_it_does_not
 SPY = """
 import sys
 from pneumo_ros.control import Pid
-from pneumo_ros.ros.controller import main, settings
+from pneumo_ros.axis.controller import settings
+from pneumo_ros.ros.controller import main
 
 
 class Spy(Pid):

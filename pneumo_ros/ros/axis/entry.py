@@ -6,12 +6,12 @@ They are the same nodes with the same topics; in one process their messages need
 import sys
 from collections.abc import Sequence
 
+from pneumo_ros.axis.controller import settings as controller_settings
+from pneumo_ros.axis.simulator import settings as simulator_settings
 from pneumo_ros.ros.arguments import parse
-from pneumo_ros.ros.controller import settings as controller_settings
 from pneumo_ros.ros.controller.node import Controller
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.run import run
-from pneumo_ros.ros.simulator import settings as simulator_settings
 from pneumo_ros.ros.simulator.entry import SWITCH_INTERVAL
 from pneumo_ros.ros.simulator.node import Simulator
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.task import Future
 
+from pneumo_ros.axis.controller.progress import INVALID_GOAL, SUCCESSFUL, Progress, Verdict
 from pneumo_ros.errors import UsageError
-from pneumo_ros.ros.controller.progress import INVALID_GOAL, SUCCESSFUL, Progress, Verdict
 from pneumo_ros.ros.controller.requests import nanoseconds
 
 try:  # there are no wheels of it; it comes with a ROS 2 distribution

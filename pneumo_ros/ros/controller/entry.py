@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from pneumo_ros.axis.controller.settings import SETTINGS
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.controller.node import Controller
-from pneumo_ros.ros.controller.settings import SETTINGS
 from pneumo_ros.ros.run import run
 
 

@@ -9,16 +9,10 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
-from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
-from pneumo_ros.ros import messages, readers
-from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
-from pneumo_ros.ros.controller.guiding import set_guide
-from pneumo_ros.ros.controller.health import health_of
-from pneumo_ros.ros.controller.inputs import Inputs
-from pneumo_ros.ros.controller.loop import Loop
-from pneumo_ros.ros.controller.services import Services
-from pneumo_ros.ros.controller.setpoints import Setpoints
-from pneumo_ros.ros.controller.settings import (
+from pneumo_ros.axis.controller.guiding import set_guide
+from pneumo_ros.axis.controller.health import health_of
+from pneumo_ros.axis.controller.loop import Loop
+from pneumo_ros.axis.controller.settings import (
     SETTINGS,
     absent,
     check,
@@ -29,12 +23,19 @@ from pneumo_ros.ros.controller.settings import (
     reference_of,
     valve_of,
 )
-from pneumo_ros.ros.diagnostics import Health
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.priority import take_priority
+from pneumo_ros.axis.roles import CONTROLLER
+from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B
+from pneumo_ros.ros import messages, readers
+from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
+from pneumo_ros.ros.controller.inputs import Inputs
+from pneumo_ros.ros.controller.services import Services
+from pneumo_ros.ros.controller.setpoints import Setpoints
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.parameters import Values
-from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
-from pneumo_ros.ros.rivals import CONTROLLER, Rivals
+from pneumo_ros.ros.rivals import Rivals
 
 CHECK = 0.02  # s between looks for silence
 

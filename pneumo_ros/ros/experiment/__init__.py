@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from pneumo_ros.ros.stopping import listen_for_signals
+from pneumo_ros.axis.stopping import listen_for_signals
 
 
 def main(args: Sequence[str] | None = None) -> int:

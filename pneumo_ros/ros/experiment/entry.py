@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from pneumo_ros.axis.experiment.settings import SETTINGS
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.experiment.node import Experiment
-from pneumo_ros.ros.experiment.settings import SETTINGS
 from pneumo_ros.ros.run import run
 
 

@@ -10,6 +10,12 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
+from pneumo_ros.axis.experiment.events import Events
+from pneumo_ros.axis.experiment.preparing import prepare
+from pneumo_ros.axis.experiment.settings import SETTINGS
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.priority import PRIORITY, take_priority
+from pneumo_ros.axis.roles import CONTROLLER
 from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.experiment.conductor import Conductor
 from pneumo_ros.experiment.programme_file import programme_text
@@ -18,16 +24,11 @@ from pneumo_ros.experiment.trial_result import AbortedError
 from pneumo_ros.files import write_whole
 from pneumo_ros.records.contract import COMMAND, JOINT_STATES
 from pneumo_ros.ros import messages, readers
-from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.experiment.plant import Plant
-from pneumo_ros.ros.experiment.preparing import prepare
-from pneumo_ros.ros.experiment.settings import SETTINGS
 from pneumo_ros.ros.experiment.takes import Takes
-from pneumo_ros.ros.experiment.tellers import Teller
 from pneumo_ros.ros.node import AxisNode
-from pneumo_ros.ros.priority import PRIORITY, take_priority
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
-from pneumo_ros.ros.rivals import CONTROLLER, Rivals
+from pneumo_ros.ros.rivals import Rivals
 
 CHECK = 0.1  # s between two looks after the plant, at most
 SIMULATED = 1_000_000_000  # ns between stamps and the wall's time that only another clock explains
@@ -48,9 +49,9 @@ class Experiment(AxisNode):
         self.rivals = Rivals(self, CONTROLLER)
         values = self.parameters
         values.refuse_unknown()
-        self.programme, self.folder = prepare(values, tuple(effects_files))
-        self._teller = Teller(self.get_logger(), values["events"], self._abandoned)
-        self._conductor = Conductor(self.programme, self._teller.tell)
+        self.programme, self.folder = prepare(values.values(), tuple(effects_files))
+        self._events = Events(self.get_logger().info, values["events"], self._abandoned)
+        self._conductor = Conductor(self.programme, self._events.report)
         self._reader, self._lock = readers.JointReader(values["joint_name"]), threading.Lock()
         self._begun = self._over = False
         self._origin = self._stamp = 0
@@ -92,11 +93,11 @@ class Experiment(AxisNode):
         volts = conductor.step((stamp - self._origin) * 1e-9, position)
         if conductor.recording and not before:
             self._takes.begin(conductor.recording, stamp)
-            self._teller.tell(f"{self._where}: {conductor.recording}", "trial", index=conductor.index)
+            self._events.report(f"{self._where}: {conductor.recording}", "trial", index=conductor.index)
         elif before and not conductor.recording:
             self._takes.end(stamp)
         for outcome in conductor.outcomes[outcomes:]:
-            self._teller.tell(outcome.text, "outcome", **recorded(outcome, self.folder))
+            self._events.report(outcome.text, "outcome", **recorded(outcome, self.folder))
         return volts
 
     def _send(self, volts: float) -> None:
@@ -138,7 +139,7 @@ class Experiment(AxisNode):
             self.folder.mkdir(parents=True, exist_ok=True)
             write_whole(self.folder / "programme.yaml", programme_text(self.programme))
             self._origin, self._begun = self._stamp, True
-            self._teller.tell(f"{len(self.programme.trials)} trials, recorded in {self.folder}", "begin")
+            self._events.report(f"{len(self.programme.trials)} trials, recorded in {self.folder}", "begin")
         elif time.monotonic() - self._started > self.parameters["wait"]:
             self._give_up(DataError(missing))
 
@@ -177,7 +178,7 @@ class Experiment(AxisNode):
         said += f"; {lost} messages were lost" if lost else ""
         if self._begun:
             write_whole(self.folder / "experiment.json", json.dumps(content, indent=1) + "\n")
-        self._teller.tell(said, "end", code=getattr(self.failure, "exit_code", 0), **content)
+        self._events.report(said, "end", code=getattr(self.failure, "exit_code", 0), **content)
 
     def health(self) -> Health:
         """Where in the programme it is."""

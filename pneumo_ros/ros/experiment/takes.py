@@ -7,11 +7,11 @@ from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 
+from pneumo_ros.axis.experiment.take import Entry, Take
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.records import BagTopic, contract
 from pneumo_ros.records.contract import COMMAND, DESCRIPTION, JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE
 from pneumo_ros.ros import readers
-from pneumo_ros.ros.experiment.take import Entry, Take, stamp_of
 from pneumo_ros.ros.intake import Intake, Taken
 from pneumo_ros.ros.message_classes import definition
 from pneumo_ros.ros.node import AxisNode
@@ -125,7 +125,7 @@ class Takes:
                 continue
             if name != JOINT_STATES and not math.isfinite(pressure := readers.pressure(one.payload)):
                 self._failed(DataError(f"{one.topic} is {pressure}; look after the sensor"))
-            stamp = stamp_of(one.payload, contract.TYPES[name]) or one.received
+            stamp = readers.stamp_of(one.payload, contract.TYPES[name]) or one.received
             log_time = stamp if self.simulated else one.received
             self._held.append(Entry(stamp, log_time, one.received, one.topic, one.payload))
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from pneumo_ros.axis.identification.settings import SETTINGS
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.identification.node import Identification
-from pneumo_ros.ros.identification.settings import SETTINGS
 from pneumo_ros.ros.run import run
 
 

@@ -10,15 +10,15 @@ from typing import Any
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.identification import result_file
+from pneumo_ros.axis.identification.arrivals import Arrivals, Print
+from pneumo_ros.axis.identification.settings import SETTINGS
+from pneumo_ros.axis.identification.worker import Line, Worker
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Library, load_model, model_from_dict
 from pneumo_ros.ros.description import Description, describe
-from pneumo_ros.ros.diagnostics import Health
-from pneumo_ros.ros.identification import result_file
-from pneumo_ros.ros.identification.arrivals import Arrivals, Print
-from pneumo_ros.ros.identification.settings import SETTINGS
 from pneumo_ros.ros.identification.target import Target
-from pneumo_ros.ros.identification.worker import Line, Worker
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.qos import LATCHED
 

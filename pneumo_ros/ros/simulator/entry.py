@@ -3,10 +3,10 @@
 import sys
 from collections.abc import Sequence
 
+from pneumo_ros.axis.simulator.settings import FIXED, LIVE
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.run import run
 from pneumo_ros.ros.simulator.node import Simulator
-from pneumo_ros.ros.simulator.settings import FIXED, LIVE
 
 SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let a busy callback make the next tick late
 

@@ -7,28 +7,29 @@ from pathlib import Path
 
 from std_msgs.msg import Float64
 
+from pneumo_ros.axis.health import Health
+from pneumo_ros.axis.priority import take_priority
+from pneumo_ros.axis.roles import PLANT
+from pneumo_ros.axis.simulator.health import Monitor
+from pneumo_ros.axis.simulator.lockstep import WATCH, Lockstep
+from pneumo_ros.axis.simulator.machine import machine_from_parameters
+from pneumo_ros.axis.simulator.sensors import Sensors
+from pneumo_ros.axis.simulator.settings import EFFECTS, FIXED, LIVE, effects_setting, machine_settings
+from pneumo_ros.axis.simulator.simulation import Simulation
+from pneumo_ros.axis.simulator.stamps import WallStamps
+from pneumo_ros.axis.simulator.valve_input import ValveInput
+from pneumo_ros.axis.ticker import Ticker
 from pneumo_ros.errors import NumericalError
 from pneumo_ros.records.contract import COMMAND
 from pneumo_ros.ros import readers
 from pneumo_ros.ros.description import Description, describe
-from pneumo_ros.ros.diagnostics import Health
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.peers import loop_closed
-from pneumo_ros.ros.priority import take_priority
 from pneumo_ros.ros.qos import SUBSCRIBE
-from pneumo_ros.ros.rivals import PLANT, Rivals
-from pneumo_ros.ros.simulator.health import Monitor
-from pneumo_ros.ros.simulator.lockstep import Lockstep
-from pneumo_ros.ros.simulator.machine import machine_from_parameters
+from pneumo_ros.ros.rivals import Rivals
 from pneumo_ros.ros.simulator.outlet import Outlet
-from pneumo_ros.ros.simulator.sensors import Sensors
 from pneumo_ros.ros.simulator.services import Services
-from pneumo_ros.ros.simulator.settings import EFFECTS, FIXED, LIVE, effects_setting, machine_settings
-from pneumo_ros.ros.simulator.simulation import Simulation
-from pneumo_ros.ros.simulator.stamps import WallStamps
 from pneumo_ros.ros.simulator.tuning import Tuning, initial_state
-from pneumo_ros.ros.simulator.valve_input import ValveInput
-from pneumo_ros.ros.ticker import Ticker
 
 
 class Simulator(AxisNode):
@@ -82,15 +83,18 @@ class Simulator(AxisNode):
         return Ticker(self._period, self._tick, self.fail)
 
     def _make_lockstep(self) -> Lockstep:
-        return Lockstep(
-            self,
+        lockstep = Lockstep(
             lambda: self._advance(0, 1.0),
             self._send,
             lambda: loop_closed(self, self.outlet.joint_states, self._commands),
             lambda: self.paused,
+            lambda act: self.executor.create_task(act),
+            self.get_logger(),
             wait=self.parameters["lockstep_wait"],
             timeout=self.parameters["lockstep_timeout"],
         )
+        self.create_timer(WATCH, lockstep.watch, clock=self.steady_clock)
+        return lockstep
 
     # --- life -------------------------------------------------------------------------------------------------------
 

@@ -4,10 +4,10 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 
+from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.records.contract import JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages
 from pneumo_ros.ros.qos import PUBLISH
-from pneumo_ros.ros.simulator.simulation import Simulation
 
 
 class Outlet:

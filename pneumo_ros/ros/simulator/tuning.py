@@ -7,13 +7,13 @@ from typing import Any
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
+from pneumo_ros.axis.simulator.compiling import Compiler
+from pneumo_ros.axis.simulator.machine import changed
+from pneumo_ros.axis.simulator.settings import EFFECTS, machine_settings
+from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.ros.parameters import Parameters, Values
-from pneumo_ros.ros.simulator.compiling import Compiler
-from pneumo_ros.ros.simulator.machine import changed
-from pneumo_ros.ros.simulator.settings import EFFECTS, machine_settings
-from pneumo_ros.ros.simulator.simulation import Simulation
 
 _SENSORS = (
     "noise_position", "noise_pressure", "quantisation_position", "quantisation_pressure", "publish_velocity",

@@ -1,0 +1,87 @@
+"""Measurement in, voltage out: the control law, what guides it, and what is refused. No ROS in here."""
+
+import math
+
+from pneumo_ros.axis.controller.guide import Guide
+from pneumo_ros.control import Law, Measurement, Setpoint
+
+JUMP = 1.0  # s; a stamp this much before the last one means that the clock was set, not that messages overtook
+
+
+class Loop:
+    """One control loop. Stamps [ns] are those of headers; `time` [s] begins at 0 and rises however the clock is set.
+
+    After a pause, and when the clock was set, the law begins anew, and the motion where the piston is.
+    """
+
+    def __init__(self, law: Law, timeout: float) -> None:
+        """`timeout` [s] between measurements counts as a pause."""
+        self.law, self.guide, self.timeout = law, Guide(law), timeout
+        self.wanted: Setpoint | None = None
+        self.time = self.voltage = 0.0
+        self.measured = self.refused = self.saturated = self.restarts = 0
+        self._pressures: dict[str, tuple[float, float]] = {}  # chamber -> time, pressure
+        self._origin = 0
+        self._last: int | None = None
+
+    def press(self, chamber: str, pressure: float) -> None:
+        """Take the pressure [Pa abs] in chamber "a" or "b"; refused, counted, if it is not finite."""
+        if math.isfinite(pressure):
+            self._pressures[chamber] = (self.time, pressure)
+        else:
+            self.refused += 1
+
+    @property
+    def pressures(self) -> dict[str, float | None]:
+        """Pressures [Pa abs] by chamber, None where none came lately."""
+        known: dict[str, float | None] = {"a": None, "b": None}
+        for chamber, (time, pressure) in self._pressures.items():
+            if self.time - time <= self.timeout:
+                known[chamber] = pressure
+        return known
+
+    def measure(self, stamp: int, position: float, velocity: float | None) -> float | None:
+        """Voltage [V] for a measurement at `stamp` [ns]: m, m/s; None if it is refused, 0 V without a reference."""
+        if not math.isfinite(position):
+            self.refused += 1
+            return None
+        if not self._in_order(stamp, position):
+            return None
+        self.measured += 1
+        self.wanted = self.guide.wanted(self.time, position)
+        pressures = self.pressures
+        forced = self.guide.forced(self.time, pressures)
+        if forced is not None or self.wanted is None:
+            self.voltage = forced or 0.0
+        else:
+            seen = velocity if velocity is not None and math.isfinite(velocity) else None
+            measurement = Measurement(self.time, position, seen, pressures["a"], pressures["b"])
+            self.voltage = self._step(self.wanted, measurement)
+        return self.voltage
+
+    def _step(self, wanted: Setpoint, measurement: Measurement) -> float:
+        voltage, most = self.law.step(wanted, measurement), self.law.valve.max_voltage
+        if not math.isfinite(voltage):
+            self.refused += 1
+            self.law.reset()
+            return 0.0
+        self.saturated += abs(voltage) >= most
+        return min(max(voltage, -most), most)
+
+    def _in_order(self, stamp: int, position: float) -> bool:
+        """Whether a measurement is to be answered; sets the time, and begins anew where it has to."""
+        if self._last is None or stamp < self._last - JUMP * 1e9:
+            self._origin = stamp - round(self.time * 1e9)
+        elif stamp < self._last:
+            return False  # overtaken by a later one
+        anew = self._last is None or not 0 <= stamp - self._last <= self.timeout * 1e9
+        self._last, self.time = stamp, (stamp - self._origin) * 1e-9
+        if anew:
+            self.restart(position)
+        return True
+
+    def restart(self, position: float) -> None:
+        """Forget what the law knows of the past, and go on from `position` [m]."""
+        self.law.reset()
+        self.guide.restart(self.time, position)
+        self.restarts += 1

@@ -1,0 +1,137 @@
+"""Parameters of the controller, and what they mean for law, valve and reference."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pneumo_ros.axis.controller import guiding
+from pneumo_ros.axis.controller.guiding import limits_of
+from pneumo_ros.axis.priority import PRIORITY
+from pneumo_ros.axis.setting import Setting
+from pneumo_ros.control import LAWS, Law, Machine, Reference, ValveInverse
+from pneumo_ros.control.control_file import SMOOTHEST, SMOOTHING
+from pneumo_ros.control.machine import ABSENT, PARAMETERS
+from pneumo_ros.control.reference import constant, sine, steps
+from pneumo_ros.plant import load_model
+from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.records.contract import JOINT
+
+SHAPES = ("topic", "constant", "steps", "sine")
+_DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
+
+_OWN = (
+    Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
+    Setting("law", "pid", "control law", live=False, choices=tuple(LAWS)),
+    PRIORITY,
+    Setting("measurement_timeout", 0.1, "age of the last measurement at which 0 V is sent", "s", 0.001, 60.0),
+    Setting("max_voltage", 10.0, "limit of the command", "V", 0.0, 100.0),
+)
+_VALVE = (
+    # names as in the machine file, which may be given as it is
+    Setting("dead_zone.right_limit", 0.78, "voltage at which port a begins to fill", "V", 0.0, 10.0),
+    Setting("dead_zone.left_limit", 0.78, "magnitude of the voltage at which port a begins to empty", "V", 0.0, 10.0),
+    Setting("dead_zone.right_slope", 1.0, "slope beyond the right limit", "V/V", 0.01, 100.0),
+    Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
+    Setting(
+        "valve.smoothing", SMOOTHING, "opening by which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
+    ),
+)
+EFFECTS = "effects"
+
+
+def _of_machine(name: str, default: float) -> Setting:
+    section, _, key = name.partition(".")
+    given = (Library.frame(section) if section in FRAME else Library().find(section)).parameters[key]
+    return Setting(name, default, given.meaning, "" if given.unit == "1" else given.unit, given.low, given.high)
+
+
+_MACHINE = (
+    Setting(EFFECTS, list(load_model("axis").effects), "effects that the machine file lists", live=False),
+    *(_of_machine(name, default) for name, default in PARAMETERS.items()),
+)
+OF_THE_MACHINE = frozenset({EFFECTS, *PARAMETERS, *(f"dead_zone.{name}" for name in _DEAD_ZONE)})
+_REFERENCE = (
+    Setting("reference.shape", "topic", "where the reference comes from; topic: position/reference", choices=SHAPES),
+    Setting("reference.position", 0.0, "reference of shape constant", "m", -100.0, 100.0),
+    Setting("reference.levels", [0.0, 0.06], "references of shape steps, one after the other", "m", -100.0, 100.0),
+    Setting("reference.hold", 8.0, "time each of the levels is held", "s", 0.001, 1e6),
+    Setting("reference.offset", 0.0, "middle of the sine", "m", -100.0, 100.0),
+    Setting("reference.amplitude", 0.3, "amplitude of the sine", "m", -100.0, 100.0),
+    Setting("reference.frequency", 0.05, "frequency of the sine", "Hz", 0.0, 100.0),
+)
+_GAINS = tuple(
+    Setting(f"{law}.{name}", gain.default, gain.meaning, gain.unit, gain.low, gain.high)
+    for law, kind in LAWS.items()
+    for name, gain in kind.gains.items()
+)
+SETTINGS = (*_OWN, *_REFERENCE, *guiding.SETTINGS, *_VALVE, *_MACHINE, *_GAINS)
+
+
+def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
+    """Gains of the law of that name among all parameters."""
+    return {name: values[f"{law}.{name}"] for name in LAWS[law].gains}
+
+
+def valve_of(values: Mapping[str, Any]) -> ValveInverse:
+    """The inverse of the valve; UsageError if the values are no valve."""
+    dead_zone = {name: values[f"dead_zone.{name}"] for name in _DEAD_ZONE}
+    return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
+
+
+def reference_of(values: Mapping[str, Any]) -> tuple[Reference, bool] | None:
+    """The reference that the parameters describe, and whether it jumps; None if it comes from topics.
+
+    UsageError for bad values, such as positions outside the limits and the stroke.
+    """
+    shape, offset = values["reference.shape"], values["reference.offset"]
+    if shape == "constant":
+        _require_within(values, values["reference.position"])
+        return constant(values["reference.position"]), True
+    if shape == "steps":
+        _require_within(values, *values["reference.levels"])
+        return steps(list(values["reference.levels"]), values["reference.hold"]), True
+    if shape == "sine":
+        amplitude = values["reference.amplitude"]
+        _require_within(values, offset + amplitude, offset - amplitude)
+        return sine(amplitude, values["reference.frequency"], offset), False
+    return None
+
+
+def _require_within(values: Mapping[str, Any], *positions: float) -> None:
+    limits = limits_of(values).on_stroke(machine_of(values).stroke)
+    for position in positions:
+        limits.require(position)
+
+
+def machine_of(values: Mapping[str, Any]) -> Machine:
+    """What the law knows of the machine."""
+    return Machine.of(values[EFFECTS], values)
+
+
+def law_of(values: Mapping[str, Any]) -> Law:
+    """The law that the parameters describe; UsageError for a gain out of range or values that are no valve."""
+    return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
+
+
+def check(values: Mapping[str, Any]) -> None:
+    """Raise UsageError unless the parameters together make a law, leave room to move, and a reference inside it."""
+    limits_of(values).on_stroke(law_of(values).machine.stroke)
+    reference_of(values)
+
+
+def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
+    """Names that a machine file brought along and that no law uses."""
+    effects = given.get(EFFECTS)
+    if effects is None:
+        return set()
+    sections = {*FRAME, *effects}
+    return {name for name in given if name.partition(".")[0] in sections}
+
+
+def absent(given: Mapping[str, Any]) -> dict[str, float]:
+    """Values that stand for the effects which a machine file does not list: no friction, a valve that opens at once."""
+    effects = given.get(EFFECTS)
+    if effects is None:
+        return {}
+    known = {**ABSENT, "dead_zone.right_limit": 0.0, "dead_zone.left_limit": 0.0}
+    listed = {*FRAME, *effects}
+    return {n: value for n, value in known.items() if n.partition(".")[0] not in listed and n not in given}

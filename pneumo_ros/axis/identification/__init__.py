@@ -1,0 +1,1 @@
+"""What the identification does: find complete recordings, identify in a process of its own, store results."""

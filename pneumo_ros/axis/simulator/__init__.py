@@ -1,0 +1,1 @@
+"""What the simulator does: valve input, plant and sensors, sample by sample."""

@@ -1,0 +1,55 @@
+"""The machine as ROS parameters say it: a whole machine file, or changes to one."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pneumo_ros.axis.simulator.settings import EFFECTS
+from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import Library, Model, load_model, model_from_dict
+from pneumo_ros.plant.library import FRAME
+
+
+def machine_from_parameters(base: str, given: Mapping[str, Any], effects_files: Iterable[str | Path] = ()) -> Model:
+    """The model that the `given` parameters describe.
+
+    A whole machine file (effects and sections piston, air, chambers) stands alone, and nothing may be missing in it.
+    Otherwise `given` changes the machine file `base`. Raises UsageError with the nearest names.
+    """
+    values, files = dict(given), tuple(effects_files)
+    if {EFFECTS, *FRAME} <= {name.partition(".")[0] for name in values}:
+        return _with_chambers(model_from_dict(_nested(values), "parameters", Library(files)))
+    model = load_model(base, files)
+    effects = values.pop(EFFECTS, None)
+    if effects is not None:
+        model = model.with_effects(effects)
+    return _with_chambers(model.with_parameters(values) if values else model)
+
+
+def changed(model: Model, values: Mapping[str, Any]) -> Model:
+    """`model` with the effects and parameters in `values`, as far as they are the machine's; UsageError as above.
+
+    The same model is returned when nothing differs.
+    """
+    effects = tuple(values.get(EFFECTS, model.effects))
+    if effects != model.effects:
+        model = model.with_effects(effects)
+    new = {n: v for n, v in values.items() if n in model.parameters and v != model.parameters[n]}
+    return model.with_parameters(new) if new else model
+
+
+def _with_chambers(model: Model) -> Model:
+    if model.force_driven:
+        raise UsageError(f"{model.name} has no chambers; the simulator takes a machine file with a section 'chambers'")
+    return model
+
+
+def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    nested: dict[str, Any] = {}
+    for name, value in values.items():
+        section, dot, key = name.partition(".")
+        if dot:
+            nested.setdefault(section, {})[key] = value
+        else:
+            nested[section] = list(value) if section == EFFECTS else value
+    return nested
