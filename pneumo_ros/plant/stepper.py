@@ -1,4 +1,4 @@
-"""Stepping a plant that runs on: for nodes and closed loops, where parameters and effects may change under way."""
+"""Stepping a plant that runs on: for nodes and closed loops, where parameters and effects may change while it runs."""
 
 import math
 
@@ -8,29 +8,38 @@ from numpy.typing import NDArray
 from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.plant.model import STEP, Model, substeps
 
+Array = NDArray[np.float64]
+
 
 class Stepper:
-    """A model, its current state and time; `advance` costs little more than the kernel."""
+    """A model, its present state and time. A step takes little longer than its kernel.
 
-    def __init__(
-        self, model: Model, state: NDArray[np.float64], *, sample_time: float = 1e-3, step: float = STEP
-    ) -> None:
-        """Start at `state` (states,), time 0; `sample_time` [s] per `advance`, in steps no longer than `step` [s].
+    A sample has `parts` integration steps of `step` [s]; the voltage may change from one of them to the next.
+    """
+
+    def __init__(self, model: Model, state: Array, *, sample_time: float = 1e-3, step: float = STEP) -> None:
+        """Start at `state` (states,), time 0; `sample_time` [s] per sample, in steps no longer than `step` [s].
 
         The kernel is compiled or loaded here, so that no later call waits for it. Raises UsageError for a state that
         does not fit the model.
         """
-        self._stride, self._h = substeps(sample_time, step)
+        self.parts, self.step = substeps(sample_time, step)
         self.sample_time = sample_time
-        self._voltage, self.time = np.zeros(1), 0.0
+        self.samples = 0  # since the start or the last reset
+        self._voltage = np.zeros(1)
         self._adopt(model, model._state_vector(state))
 
-    def _adopt(self, model: Model, state: NDArray[np.float64]) -> None:
+    def _adopt(self, model: Model, state: Array) -> None:
         out = np.empty((1, len(state)))
-        model.kernel.run(state.copy(), model.values, np.zeros(0), 0.0, self._h, self._stride, 1, out[:0])
+        model.kernel.run(state.copy(), model.values, np.zeros(0), 0.0, self.step, self.parts, 1, out[:0])
         self.model, self.state, self._values, self._out, self._run = model, state, model.values, out, model.kernel.run
 
-    def advance(self, voltage: float) -> NDArray[np.float64]:
+    @property
+    def time(self) -> float:
+        """Simulated time [s] since the start or the last reset."""
+        return self.samples * self.sample_time
+
+    def advance(self, voltage: float) -> Array:
         """Hold `voltage` [V] for one sample; returns the state (states,), a view that the next call overwrites.
 
         Raises NumericalError when the state leaves the finite numbers; the stepper then still holds the last good one.
@@ -39,18 +48,27 @@ class Stepper:
         if not math.isfinite(voltage):
             raise UsageError(f"voltage is {voltage}; it takes a finite number")
         self._voltage[0] = voltage
+        return self._sample(self._voltage, self.parts, 1)
+
+    def advance_in_parts(self, voltages: Array) -> Array:
+        """One sample with a finite voltage [V] for each of its steps (parts,); otherwise as `advance`."""
+        return self._sample(voltages, 1, self.parts)
+
+    def _sample(self, voltages: Array, stride: int, every: int) -> Array:
+        """Hold each voltage for `stride` steps; `every` of them make the sample."""
         before = self.state.copy()
-        self._run(self.state, self._values, self._voltage, self.time, self._h, self._stride, 1, self._out)
-        if not np.isfinite(self.state).all():
-            self.state = before
+        self._run(self.state, self._values, voltages, self.time, self.step, stride, every, self._out)
+        if not math.isfinite(self.state.sum()):  # of finite numbers of a machine's size a sum is finite
+            self.state[:] = before
             raise NumericalError(f"the state left the finite numbers at t = {self.time:.3f} s")
-        self.time += self.sample_time
+        self.samples += 1
         return self.state
 
     def replace(self, model: Model) -> None:
         """Go on with another model: states of the same name keep their values, new ones start at rest."""
         self._adopt(model, model.continued(self.model, self.state))
 
-    def reset(self, state: NDArray[np.float64]) -> None:
+    def reset(self, state: Array) -> None:
         """Back to time 0 at `state` (states,); UsageError when it does not fit."""
-        self.state, self.time = self.model._state_vector(state), 0.0
+        self.state[:] = self.model._state_vector(state)
+        self.samples = 0

@@ -25,7 +25,7 @@ def drive(plant: Simulation, samples: int, voltage: float = 2.0) -> np.ndarray:
     for _ in range(samples):
         plant.valve.accept(voltage, 0)
         plant.advance(0, 1.0)
-        rows.append(plant.state.copy())
+        rows.append(plant.plant.state.copy())
     return np.array(rows)
 
 
@@ -37,27 +37,27 @@ def test_it_is_the_model() -> None:
 def test_readings_and_effort_are_those_of_the_state() -> None:
     plant = simulation()
     drive(plant, 200)
-    y, v, p_a, p_b, _ = plant.state
+    y, v, p_a, p_b, _ = plant.plant.state
     assert plant.reading == (y, v, p_a, p_b)
-    assert plant.effort == pytest.approx(float(AXIS.effort(plant.state)))
+    assert plant.effort == pytest.approx(float(AXIS.effort(plant.plant.state)))
     assert plant.time == pytest.approx(0.4)
 
 
 def test_other_parameters_and_effects_leave_the_state_as_it_is() -> None:
     plant = simulation()
     drive(plant, 200)
-    before = dict(zip(AXIS.states, plant.state.copy(), strict=True))
+    before = dict(zip(AXIS.states, plant.plant.state.copy(), strict=True))
     for model in (
         AXIS.with_parameters({"piston.mass": 20.0}),
         AXIS.with_effects([name for name in AXIS.effects if name != "lugre_friction"]),
         AXIS,
     ):
         plant.replace(model)
-        now = dict(zip(model.states, plant.state, strict=True))
+        now = dict(zip(model.states, plant.plant.state, strict=True))
         assert {name: now[name] for name in ("y", "v", "p_a", "p_b")} == {
             n: before[n] for n in ("y", "v", "p_a", "p_b")
         }
-    assert plant.state[AXIS.states.index("z")] == 0.0  # it left and came back at rest
+    assert plant.plant.state[AXIS.states.index("z")] == 0.0  # it left and came back at rest
 
 
 def test_reset_repeats_the_run_and_time_goes_on_in_the_stamps() -> None:

@@ -1,54 +1,52 @@
-"""The plant that runs on: valve input, kernel and sensors, advanced sample by sample. No ROS in here."""
-
-import math
+"""The plant of a simulator: valve input, stepper and sensors, advanced sample by sample."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pneumo_ros.axis.simulator.sensors import Reading, Sensors
 from pneumo_ros.axis.simulator.valve_input import ValveInput
-from pneumo_ros.errors import NumericalError
-from pneumo_ros.plant import Model
-from pneumo_ros.plant.model import substeps
+from pneumo_ros.plant import Model, Stepper
 
 
 class Simulation:
-    """State of a machine between samples; model and parameters may be swapped there without a jump of the state."""
+    """A stepper between valve commands and sensor readings; model and parameters may change between two samples."""
 
     def __init__(self, model: Model, valve: ValveInput, sensors: Sensors, *, rate: float, step: float) -> None:
         """Sample at `rate` [Hz], integrate in steps no longer than `step` [s]. The kernel is compiled here."""
-        self.parts, self.step = substeps(1.0 / rate, step)
         self.rate, self.valve, self.sensors = rate, valve, sensors
-        self.samples = 0  # since the start or the last reset
-        self.total = 0  # since the start
+        self.plant = Stepper(model, model.state(), sample_time=1.0 / rate, step=step)
+        self.total = 0  # samples since the start
         self.initial: dict[str, float] = {}
-        self._held = np.zeros(self.parts)
-        self._adopt(model, model.state())
+        self._held, self._now = np.zeros(self.plant.parts), np.zeros(1)
+        self._observe_model()
         self.reset()
+
+    @property
+    def model(self) -> Model:
+        """The model as it is now."""
+        return self.plant.model
 
     @property
     def time(self) -> float:
         """Simulated time [s] since the start or the last reset."""
-        return self.samples / self.rate
+        return self.plant.time
 
     def replace(self, model: Model) -> None:
         """Go on with another model: states of the same name keep their values, new ones start at rest."""
-        self._adopt(model, model.continued(self.model, self.state))
+        self.plant.replace(model)
+        self._observe_model()
 
-    def _adopt(self, model: Model, state: NDArray[np.float64]) -> None:
-        self.model, self.state = model, state
-        self._values, self._run, self._observe = model.values, model.kernel.run, model.kernel.observe
-        self._row, self._out, self._now = state[np.newaxis], np.empty((1, len(state))), np.zeros(1)  # views, scratch
-        self._run(state.copy(), self._values, self._held, 0.0, self.step, 1, self.parts, self._out[:0])  # compiles
-        self._seen = np.empty((1, len(model.composition.observed)))
-        self._places = [model.composition.observed.index(s) for s in ("y_measured", "p_a_measured", "p_b_measured")]
+    def _observe_model(self) -> None:
+        """Prepare what reading the sensors needs of the present model."""
+        model, observed = self.plant.model, self.plant.model.composition.observed
+        self._values, self._observe, self._row = model.values, model.kernel.observe, self.plant.state[np.newaxis]
+        self._seen = np.empty((1, len(observed)))
+        self._places = [observed.index(s) for s in ("y_measured", "p_a_measured", "p_b_measured")]
         areas = model["piston.area_a"], model["piston.area_b"]
         self._areas = (*areas, model["air.atmospheric_pressure"] * (areas[0] - areas[1]))
 
     def reset(self) -> None:
         """Back to time 0, the state `initial` and the first number of the noise, valve closed."""
-        self.state[:] = self.model.state(**self.initial)
-        self.samples = 0
+        self.plant.reset(self.plant.model.state(**self.initial))
         self.valve.reset()
         self.sensors.reset()
         self._read()
@@ -58,29 +56,24 @@ class Simulation:
 
         Raises NumericalError when the state leaves the finite numbers; it then is the last good one.
         """
-        time = self.time
-        self.valve.hold(self._held, begin, part, time, self.step)
-        before = self.state.copy()
-        self._run(self.state, self._values, self._held, time, self.step, 1, self.parts, self._out)
-        if not math.isfinite(self.state.sum()):  # of finite numbers of this size a sum is finite
-            self.state[:] = before
-            raise NumericalError(f"the state left the finite numbers at t = {time:.3f} s; reset, or mend a parameter")
-        self.samples += 1
+        plant = self.plant
+        self.valve.hold(self._held, begin, part, plant.time, plant.step)
+        plant.advance_in_parts(self._held)
         self.total += 1
         self._read()
 
     def _read(self) -> None:
         """What the sensors see of the state, kept in `reading`."""
-        self._now[0] = self.time
+        self._now[0] = self.plant.time
         self._observe(self._row, self._values, self._held[-1:], self._now, self._seen)
         seen = self._seen[0].tolist()
         y, p_a, p_b = self._places
-        self.reading = self.sensors.read(Reading(seen[y], float(self.state[1]), seen[p_a], seen[p_b]))
+        self.reading = self.sensors.read(Reading(seen[y], float(self.plant.state[1]), seen[p_a], seen[p_b]))
 
     @property
     def clock(self) -> int:
-        """Simulated time [ns] for stamps: resets do not turn it back, and it begins one sample after 0, which in ROS
-        means that there is no time.
+        """Simulated time [ns] for stamps: it goes on at a reset, and begins one sample after 0, because 0 means in ROS
+        that there is no time.
         """
         return round((self.total + 1) * 1e9 / self.rate)
 

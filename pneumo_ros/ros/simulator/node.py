@@ -121,12 +121,12 @@ class Simulator(AxisNode):
         if self.lockstep:
             if self._advance(0, 1.0):
                 self.lockstep.publish()
-        elif self._advance(round(now - self._period), self._period / self.simulation.parts):
+        elif self._advance(round(now - self._period), self._period / self.simulation.plant.parts):
             self._send(now)
 
     def _tick(self, deadline: int) -> None:
         """The sample that ends at `deadline` [ns, CLOCK_MONOTONIC] is over: find out what happened in it."""
-        begin, part = round(deadline - self._period), self._period / self.simulation.parts
+        begin, part = round(deadline - self._period), self._period / self.simulation.plant.parts
         with self.lock:
             if not self.paused and self._advance(begin, part):
                 self._send(deadline)
@@ -137,7 +137,7 @@ class Simulator(AxisNode):
             self.simulation.advance(begin, part)
         except NumericalError as error:
             self.fault, self.paused = str(error), True
-            self.get_logger().error(f"{error}; paused")
+            self.get_logger().error(f"{error}; paused: call ~/reset, or change a parameter first")
         return self.fault is None
 
     def _send(self, moment: int = 0) -> None:
