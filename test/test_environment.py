@@ -33,6 +33,11 @@ def test_advice_fits_the_place() -> None:
     assert all("\n" not in text for text in (plain, too_new, distribution))
 
 
+@pytest.mark.parametrize(("python", "wheels"), [((3, 9), False), ((3, 10), True), ((3, 13), True), ((3, 14), False)])
+def test_wheels_are_offered_to_the_pythons_that_have_them(python: tuple[int, int], wheels: bool) -> None:
+    assert ("pip install 'pneumo_ros[ros]'" in ros_advice(["rclpy"], python, "")) == wheels
+
+
 def test_advice_names_packages_as_pip_and_apt_do() -> None:
     assert "-m pip install pyyaml (or, on Debian and Ubuntu: sudo apt install python3-yaml)" in library_advice(["yaml"])
     assert "apt" not in library_advice(["numba", "rosbags"]), "rosbags is in no distribution"

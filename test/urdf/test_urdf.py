@@ -60,6 +60,19 @@ def test_everything_that_moves_has_an_inertia_that_a_body_can_have(file: str) ->
         assert zz + xx >= yy
 
 
+@pytest.mark.parametrize("file", JOINTS)
+def test_tubes_and_rods_have_the_inertia_of_full_cylinders(file: str) -> None:
+    """m r^2 / 2 about their axis, which is x, and m (3 r^2 + l^2) / 12 across it."""
+    links = [link for link in made(file).findall("link") if (link.get("name") or "").endswith(("_tube", "_rod"))]
+    assert len(links) == 2 * len(JOINTS[file])
+    for link in links:
+        shape, body = link.find("visual/geometry/cylinder"), link.find("inertial")
+        r, length, m = float(shape.get("radius")), float(shape.get("length")), float(body.find("mass").get("value"))
+        across = m * (3.0 * r**2 + length**2) / 12.0
+        inertia = {key: float(value) for key, value in body.find("inertia").items()}
+        assert [inertia[key] for key in ("ixx", "iyy", "izz")] == pytest.approx([0.5 * m * r**2, across, across])
+
+
 @pytest.mark.parametrize("plugin", PLUGINS)
 @pytest.mark.parametrize("file", JOINTS)
 def test_each_cylinder_has_a_ros2_control_block_of_its_own(file: str, plugin: str) -> None:
