@@ -8,9 +8,12 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from pneumo_ros.files import check_writable, write_whole
+
+if TYPE_CHECKING:
+    from pneumo_ros.wording.table import Table
 
 
 class Console:
@@ -87,6 +90,14 @@ def columns(rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> str:
         return "  ".join(cells).rstrip()
 
     return "\n".join(line(row) for row in rows)
+
+
+def table_text(table: "Table | None") -> str:
+    """A table below its title, its rows indented; empty where there is nothing to show."""
+    if table is None or not table.rows:
+        return ""
+    rows = [(f"  {first}" if first else "", *others) for first, *others in table.rows]
+    return (f"{table.title}:\n" if table.title else "") + columns([table.head, *rows], right=table.numeric)
 
 
 class Progress:

@@ -4,17 +4,21 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from pneumo_ros.wording.naming import NORMAL
+
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison
     from pneumo_ros.diagnose.between import Moved
     from pneumo_ros.diagnose.candidate import Candidate
     from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained
     from pneumo_ros.plant import Model
+    from pneumo_ros.plant.effect import Parameter
     from pneumo_ros.shooting.refit import Estimate
 
 SCHEMA_VERSION = 1
-NORMAL = 1.96  # deviations of a 95 % interval
-KNOWN = 0.5  # of the deviation known before: a larger one says nothing
+KNOWN = 0.5  # of the standard deviation known before: a fit that leaves more of it has determined nothing
 
 
 def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", experiment: str) -> dict[str, Any]:
@@ -31,7 +35,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "interrupted": outcome.interrupted,
         "because": outcome.because,
         "failing": list(outcome.failing),
-        "added": [_added(one) for one in outcome.added],
+        "added": [_added(one, outcome.model) for one in outcome.added],
         "candidates": [_candidate(one, outcome) for one in outcome.ranking],
         "holdout": {key: outcome.errors[key] for key in ("before", "after", "noise")},
         "unexplained": None if outcome.unexplained is None else _unexplained(outcome.unexplained),
@@ -48,9 +52,12 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
     }
 
 
-def value_dict(value: float, std: float, unit: str) -> dict[str, Any]:
-    """A parameter with its 95 % interval; what is infinite becomes null in JSON."""
-    return {"value": value, "std": std, "unit": unit, "low": value - NORMAL * std, "high": value + NORMAL * std}
+def value_dict(value: float, std: float, known: "Parameter") -> dict[str, Any]:
+    """A parameter with its 95 % interval, meaning and allowed range; what is infinite becomes null in JSON."""
+    return {
+        "value": value, "std": std, "unit": known.unit, "low": value - NORMAL * std, "high": value + NORMAL * std,
+        "meaning": known.meaning, "least": known.low, "most": known.high,
+    }  # fmt: skip
 
 
 def equations_dict(comparison: "Comparison") -> dict[str, Any]:
@@ -58,10 +65,11 @@ def equations_dict(comparison: "Comparison") -> dict[str, Any]:
     return {name: dict(vars(judged)) for name, judged in comparison.equations.items()}
 
 
-def _added(one: "Addition") -> dict[str, Any]:
+def _added(one: "Addition", model: "Model") -> dict[str, Any]:
+    known = model.library.find(one.effect).parameters
     return {
         "effect": one.effect,
-        "parameters": {key: value_dict(v.value, v.std, v.unit) for key, v in one.parameters.items()},
+        "parameters": {key: value_dict(v.value, v.std, known[key]) for key, v in one.parameters.items()},
         "indistinguishable_from": list(one.indistinguishable_from),
         "holdout_error_before": one.holdout_error_before,
         "holdout_error_after": one.holdout_error_after,
@@ -73,6 +81,8 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
     """Evidence of the round in which the candidate was tried last."""
     added = {addition.effect: addition for addition in outcome.added}
     rivals = [name for name, addition in added.items() if one.effect in addition.indistinguishable_from]
+    tried = _tried(one, outcome)
+    low, high = _size_interval(tried)
     predicted = added[one.effect].holdout_error_after if one.effect in added else one.holdout_error
     return {
         "effect": one.effect,
@@ -82,10 +92,12 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
         "holdout_gain": one.holdout_gain,
         "equation": one.equation,
         "size": one.size,
+        "size_low": low,
+        "size_high": high,
         "added": one.effect in added,
         "rival_of": rivals,
         "objections": list(one.objections) or _outdone(one.effect, list(added), rivals, outcome.model),
-        "parameters": _fitted(_trial(one, outcome), outcome.model),
+        "parameters": _fitted(tried, outcome.model),
     }
 
 
@@ -94,14 +106,29 @@ def _outdone(name: str, added: list[str], rivals: list[str], model: "Model") -> 
     if name in added or rivals or not added:
         return []
     simpler = [other for other in added if other in model.library.find(name).contains]
-    return [f"{simpler[0]} explains as much with fewer parameters" if simpler else "another one explains more"]
+    return [f"{simpler[0]} explains as much with fewer parameters" if simpler else "another effect explains more"]
 
 
-def _trial(one: "Ranked", outcome: "Outcome") -> "Candidate":
-    """The candidate that a row of the ranking tells of."""
-    candidates = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
-    candidates = candidates or [c for step in outcome.steps for c in step.candidates if c.name == one.effect]
-    return candidates[-1]
+def _tried(one: "Ranked", outcome: "Outcome") -> "Candidate":
+    """The candidate that a row of the ranking shows: that of the addition, else the last one with the row's t."""
+    added = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
+    tried = [c for step in outcome.steps for c in (*step.candidates, *step.rivals) if c.name == one.effect]
+    return [*tried, *(c for c in tried if c.hypothesis.t == one.score), *added][-1]
+
+
+def _size_interval(candidate: "Candidate") -> tuple[float, float]:
+    """95 % interval of the largest size in usual ones; NaN where the fit has no covariance."""
+    from pneumo_ros.diagnose.judging import sizes
+
+    h = candidate.hypothesis
+    if not len(h.coordinates) or len(h.covariance) != len(h.coordinates):
+        return math.nan, math.nan
+    here = sizes(h.coordinates, h.u)
+    largest = int(np.argmax(np.abs(here)))
+    spread = np.zeros(len(here))
+    spread[largest] = NORMAL * math.sqrt(max(float(h.covariance[largest, largest]), 0.0))
+    ends = [sizes(h.coordinates, h.u + off)[largest] * np.sign(here[largest]) for off in (-spread, spread)]
+    return float(min(ends)), float(max(ends))
 
 
 def _fitted(candidate: "Candidate", model: "Model") -> dict[str, Any]:
@@ -114,7 +141,7 @@ def _fitted(candidate: "Candidate", model: "Model") -> dict[str, Any]:
         spread = math.sqrt(max(float(h.covariance[k, k]), 0.0)) if seen else math.inf
         value, key = c.value(float(u)), c.name.partition(".")[2]
         std = spread * (abs(value) if c.logarithmic else abs(c.scale)) if spread < KNOWN * c.prior else math.inf
-        found[key] = value_dict(value, std, specified[key].unit)
+        found[key] = value_dict(value, std, specified[key])
     return found
 
 

@@ -1,7 +1,6 @@
 """What signals, equations, regimes and variables are called, and numbers as people read them. Plain Python only."""
 
 import math
-from collections.abc import Mapping
 
 # name in reports -> words, unit shown, factor from SI
 SIGNALS = {
@@ -55,11 +54,6 @@ def amount(value: float | None, target: str) -> str:
     return "-" if value is None else f"{number(factor * value)} {unit}"
 
 
-def put_off(late: float) -> str:
-    """By how much a measured force was put off [s], if it was."""
-    return f"Positions come {number(1e3 * late, 2)} ms after the force; it was taken so much later." if late else ""
-
-
 def times(ratio: float | None) -> str:
     """A ratio to the noise: '14 x', '1.2 x'."""
     if ratio is None or not math.isfinite(ratio):
@@ -72,12 +66,3 @@ def percent(share: float | None) -> str:
     if share is None or not math.isfinite(share):
         return "-"
     return f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "< 1 %"
-
-
-def machine_changed(share: float, parameters: Mapping[str, tuple[float, float, str]]) -> str:
-    """That a share of what remains is the machine's own parameters having moved: name -> before, after, unit."""
-    moves = [f"{n} {number(one, 4)} -> {number(two, 4)} {unit}".rstrip() for n, (one, two, unit) in parameters.items()]
-    return (
-        f"{percent(share)} of it is gone once the model's own parameters are fitted to the held-out recordings: "
-        f"{', '.join(moves)}. The machine itself was another one then, as by temperature or wear."
-    )

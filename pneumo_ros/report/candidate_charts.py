@@ -1,7 +1,6 @@
 """Candidates as bars: how sure they are on the fitted runs, and what they bring on the held-out ones."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,28 +8,21 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.candidate import GAIN_LEAST, T_LEAST
 from pneumo_ros.report.bars import bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
-from pneumo_ros.report.naming import effect_words, sentence
-
-if TYPE_CHECKING:
-    from pneumo_ros.diagnose.outcome import Ranked
+from pneumo_ros.wording.candidates import ADDED, REFUSED, RIVAL, STATES, CandidateWords
+from pneumo_ros.wording.naming import sentence
 
 Array = NDArray[np.float64]
 
-# state of a candidate -> name in the legend and colour
-SHOWN: dict[str, tuple[str, Role]] = {
-    "added": ("added", "first"),
-    "rival": ("not told apart", "third"),
-    "refused": ("refused", "measured"),
-}
+COLOURS: dict[str, Role] = {ADDED: "first", RIVAL: "third", REFUSED: "measured"}
 _DECADES = 8.0  # from this many times the least t on, the axis is logarithmic
 _ROOM = 0.2  # of the axis, for labels
 
 
-def candidate_charts(ranking: Sequence["Ranked"], states: Sequence[str]) -> tuple[Chart, Chart]:
+def candidate_charts(found: Sequence[CandidateWords]) -> tuple[Chart, Chart]:
     """t and held-out gain of every candidate, in rows of the same order."""
-    t = np.array([one.score for one in ranking])
-    gain = np.array([100.0 * one.holdout_gain for one in ranking])
-    names = [effect_words(one.effect) for one in ranking]
+    t = np.array([one.t for one in found])
+    gain = np.array([100.0 * one.gain for one in found])
+    names, states = [one.effect for one in found], [one.state for one in found]
     return _sureness(names, states, t), _gain(names, states, gain)
 
 
@@ -66,10 +58,10 @@ def _panel(
     names: Sequence[str], states: Sequence[str], begin: Array, end: Array, said: Sequence[str], least: float
 ) -> Panel:
     traces: list[Trace] = []
-    for state, (name, role) in SHOWN.items():
+    for state, role in COLOURS.items():
         rows = np.flatnonzero([one == state for one in states])
         if len(rows):
-            traces.append(bars(name, role, begin[rows], rows, end[rows]))
+            traces.append(bars(STATES[state], role, begin[rows], rows, end[rows]))
     rows = np.arange(len(names))
     traces += [guide("least", least, len(names)), labels(np.maximum(end, least), rows, said)]
     return Panel("", tuple(traces), ticks=tuple(names))

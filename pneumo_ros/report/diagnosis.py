@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.diagnose.outcome import UNKNOWN
-from pneumo_ros.report.answer import answer_section, badge, verdict_sentence
+from pneumo_ros.report.answer import answer_section, badge
 from pneumo_ros.report.candidates import candidates_section
 from pneumo_ros.report.chart import Report, Section
 from pneumo_ros.report.comparison import comparison_sections
@@ -13,32 +13,32 @@ from pneumo_ros.report.origin import origin_section
 from pneumo_ros.report.remains import remains_section
 from pneumo_ros.report.residuals import residuals_section
 from pneumo_ros.report.waterfall import waterfall_section
+from pneumo_ros.wording.diagnosis import diagnosis
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.outcome import Outcome
 
 
 def diagnosis_report(
-    outcome: "Outcome", result: dict[str, Any], compared: dict[str, Any], origin: dict[str, Any], experiment: str = ""
+    outcome: "Outcome", result: dict[str, Any], compared: dict[str, Any], origin: dict[str, Any]
 ) -> Report:
     """Everything a diagnosis has to show.
 
-    result: the JSON of the verb, which the page holds; compared: the JSON of `outcome.after`; both of plain types.
-    origin: what `provenance` returns, with the command line that repeats the diagnosis; experiment: what to record
-    next, in a sentence.
+    result: the JSON of the verb, which the page words and holds; compared: the JSON of `outcome.after`; both of plain
+    types. origin: what `provenance` returns, with the command line that repeats the diagnosis.
     """
-    runs = len(outcome.train) + len(outcome.held)
+    said, runs = diagnosis(result), len(outcome.train) + len(outcome.held)
     return Report(
         title=f"What '{outcome.model.name}' lacks, from {runs} recordings",
-        verdict=verdict_sentence(outcome),
+        verdict=said.headline,
         good=outcome.verdict != UNKNOWN,
-        badge=badge(outcome),
+        badge=badge(said),
         sections=(
-            answer_section(outcome, origin),
-            waterfall_section(outcome),
-            candidates_section(outcome),
+            answer_section(said, outcome, origin),
+            waterfall_section(said),
+            candidates_section(said.candidates),
             residuals_section(outcome),
-            remains_section(outcome, experiment),
+            remains_section(said, outcome),
             *_final(outcome, compared),
             machine_section(outcome.model, None),
             origin_section(origin),

@@ -5,6 +5,8 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
+from pneumo_ros.wording.table import Table
+
 _VOID = ("meta", "br", "hr", "col", "input")
 
 
@@ -58,6 +60,11 @@ def table(
     body = [tag("tr", [cell(k, content) for k, content in enumerate(row)]) for row in rows]
     inner = tag("table", tag("caption", caption), tag("thead", top), tag("tbody", body))
     return scrolling(inner, "Table: " + _plain(caption))
+
+
+def worded(found: Table, caption: str = "") -> Html:
+    """A table of the wording; `caption` stands where it has no title of its own."""
+    return table(found.head, found.rows, found.title or caption, numeric=found.numeric)
 
 
 def scrolling(content: Content, label: str) -> Html:

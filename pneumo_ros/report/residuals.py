@@ -6,7 +6,8 @@ from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, percent, ti
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.equations import broken, coverage
 from pneumo_ros.report.markup import tag
-from pneumo_ros.report.naming import equation_words, sentence
+from pneumo_ros.wording.naming import equation_words, sentence
+from pneumo_ros.wording.remains import FOLLOWS
 
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison
@@ -14,8 +15,7 @@ if TYPE_CHECKING:
     from pneumo_ros.diagnose.outcome import Outcome
 
 _HEIGHT = 400
-FOLLOWS = 0.1  # share from which on a variable is worth naming
-_TIED = 0.8  # of the best share: variables this close cannot be told apart here
+_TIED = 0.8  # of the best share: variables this close cannot be distinguished here
 
 
 def residuals_section(outcome: "Outcome") -> Section:

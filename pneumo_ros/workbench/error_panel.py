@@ -7,7 +7,8 @@ from dash import ClientsideFunction, Input, Output, dcc, html
 from pneumo_ros.compare.wording import SIGNALS, amount, number, times
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Html, tag
-from pneumo_ros.report.naming import change
+from pneumo_ros.wording.errors import steps as named_steps
+from pneumo_ros.wording.naming import change
 from pneumo_ros.workbench.desk import Desk, commands
 from pneumo_ros.workbench.parts import Panels, drop_down, revision, table
 from pneumo_ros.workbench.shown import content
@@ -79,8 +80,8 @@ def render(desk: Desk, _revision: int) -> list[Any]:
         f"recording{'s' if len(bags) != 1 else ''} {what}. Shown is the error of a typical window in sensor noise; "
         "1 x is the noise floor."
     )
-    title = "Error step by step"
-    section = Section("step-by-step", title, Html(tag("p", text, class_="soft")), charts=(waterfall_chart(steps),))
+    chart = waterfall_chart(named_steps(steps))
+    section = Section("step-by-step", "Error step by step", Html(tag("p", text, class_="soft")), charts=(chart,))
     return [content("error-content", [section], f"{desk.current} {steps}")]
 
 

@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from pneumo_ros.command.added import adding_dict, text
+from pneumo_ros.command.adding_json import adding_dict
+from pneumo_ros.command.adding_text import text
 from pneumo_ros.diagnose.adding import add
 from pneumo_ros.diagnose.timing import lateness, later
 from pneumo_ros.plant import load_model

@@ -7,6 +7,7 @@ import numpy as np
 from identify.making import POSITION_NOISE, PRESSURE_NOISE, QUANTUM, voltage
 
 from pneumo_ros.command.console import plain
+from pneumo_ros.command.diagnosis_json import diagnosis_dict
 from pneumo_ros.diagnose.diagnosis import diagnose
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import Model, load_model
@@ -64,8 +65,13 @@ def recorded(truth: Model, kind: str, name: str, seed: int, seconds: float = 6.0
     return Run(name, 1e-3, y, p_a, p_b, held, np.ones(len(time), dtype=bool), False)
 
 
-def diagnosis_of(outcome: Outcome) -> Report:
-    """The report of a diagnosis."""
-    result: dict[str, Any] = {"schema_version": 1, "verdict": outcome.verdict}
+def diagnosis_of(outcome: Outcome, result: dict[str, Any] | None = None) -> Report:
+    """The report of a diagnosis; `result` is its JSON."""
     compared = plain(outcome.after.as_dict())
-    return diagnosis_report(outcome, result, compared, provenance([], "axis", COMMAND), EXPERIMENT)
+    return diagnosis_report(outcome, result or json_of(outcome), compared, provenance([], "axis", COMMAND))
+
+
+def json_of(outcome: Outcome) -> dict[str, Any]:
+    """The JSON of a diagnosis."""
+    result: dict[str, Any] = plain(diagnosis_dict(outcome, {}, EXPERIMENT))
+    return result

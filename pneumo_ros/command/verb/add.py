@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.added import adding_dict, text, undetermined
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
@@ -39,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """Tell effects from recordings, read, add, print, write."""
+    from pneumo_ros.command.adding_json import adding_dict, undetermined
+    from pneumo_ros.command.adding_text import text
     from pneumo_ros.diagnose.adding import add, check_addable
     from pneumo_ros.plant import save_model
 

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
-from pneumo_ros.command.diagnosed import text
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.patience import finishing
 from pneumo_ros.command.reporting import add_report, prepare_report
@@ -45,6 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, console: Console) -> int:
     """Read, diagnose, print, write."""
     from pneumo_ros.command.diagnosis_json import diagnosis_dict
+    from pneumo_ros.command.diagnosis_text import text
     from pneumo_ros.command.suggesting import suggested
     from pneumo_ros.plant import save_model
 
@@ -119,4 +119,4 @@ def _next(options: argparse.Namespace) -> str:
 def _report(outcome: "Outcome", result: dict[str, Any], origin: dict[str, Any]) -> Any:
     from pneumo_ros.report.diagnosis import diagnosis_report
 
-    return diagnosis_report(outcome, result, plain(outcome.after.as_dict()), origin, result["suggested_experiment"])
+    return diagnosis_report(outcome, result, plain(outcome.after.as_dict()), origin)

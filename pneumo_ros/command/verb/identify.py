@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
-from pneumo_ros.command.identified import text
+from pneumo_ros.command.identification_text import text
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.recordings import expanded, read_expanded
 from pneumo_ros.command.reporting import add_report, prepare_report

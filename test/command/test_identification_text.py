@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pneumo_ros.command.identified import text
+from pneumo_ros.command.identification_text import text
 
 
 def result(**changes: Any) -> dict[str, Any]:

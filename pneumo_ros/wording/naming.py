@@ -1,42 +1,44 @@
-"""How a diagnosis is worded: names of effects and equations, lists of them, numbers with their uncertainty."""
+"""Names of equations within sentences, lists of names, and numbers with their uncertainty."""
 
 import math
 from collections.abc import Sequence
 
 from pneumo_ros.compare.wording import EQUATIONS, number
 
-NORMAL = 1.96  # deviations that hold 95 %
-
-
-def effect_words(name: str) -> str:
-    """`viscous_friction` as people say it."""
-    return name.replace("_", " ")
+NORMAL = 1.96  # standard deviations on either side that hold 95 %
 
 
 def equation_words(name: str) -> str:
-    """`chamber_a` as people say it; also what a diagnosis judges besides equations: breakaway, valve, sensor."""
+    """`chamber_a` as 'chamber a'; `name` may also be breakaway, valve or sensor."""
     return EQUATIONS[name][0] if name in EQUATIONS else name.replace("_", " ")
 
 
 def the(equation: str) -> str:
-    """`equation_words` within a sentence: 'the momentum', 'chamber a'."""
+    """`equation_words` within a sentence: 'the momentum equation', 'the equation of chamber a', 'the valve'."""
     words = equation_words(equation)
-    return words if words.startswith("chamber") else f"the {words}"
+    if equation not in EQUATIONS:
+        return f"the {words}"
+    return f"the equation of {words}" if words.startswith("chamber") else f"the {words} equation"
 
 
 def listed(words: Sequence[str], last: str = "and") -> str:
-    """'a', 'a and b', 'a, b and c'."""
+    """'a', 'a and b', 'a, b and c'; 'nothing' where there is none."""
     *first, end = words or ("nothing",)
     return f"{', '.join(first)} {last} {end}" if first else end
 
 
+def counted(number: int, thing: str) -> str:
+    """'1 run', '3 runs'."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
+
+
 def sentence(text: str) -> str:
-    """With a capital letter, the rest as it is."""
+    """The text with a capital first letter."""
     return text[:1].upper() + text[1:]
 
 
 def resolved(value: float, std: float) -> str:
-    """A value to the decimal that its standard deviation leaves certain; an interval's ends get as many decimals."""
+    """A value with the decimals that its standard deviation leaves certain; ends of an interval get as many."""
     if not (math.isfinite(std) and std > 0.0):
         return number(value)
     decimals = max(-math.floor(math.log10(std / 2.0)), 0)
@@ -48,7 +50,7 @@ def resolved(value: float, std: float) -> str:
 def interval(value: float, std: float, least: float = -math.inf, most: float = math.inf) -> str:
     """The 95 % interval of a value within what is allowed, or that there is none."""
     if not math.isfinite(std):
-        return "not determined by these recordings"
+        return "not determined"
     low, high = max(value - NORMAL * std, least), min(value + NORMAL * std, most)
     return f"{resolved(low, std)} to {resolved(high, std)}"
 
@@ -60,6 +62,4 @@ def change(before: float, after: float) -> str:
         return ""
     if ratio >= 2.0:
         return f"{number(ratio, 2)} times as much"
-    if abs(ratio - 1.0) < 0.01:
-        return "no change"
-    return f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", "\N{MINUS SIGN}")
+    return "no change" if abs(ratio - 1.0) < 0.01 else f"{100.0 * (ratio - 1.0):+.0f} %"

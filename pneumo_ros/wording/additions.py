@@ -1,0 +1,78 @@
+"""What was added to a model: parameters with intervals, the error without and with it, and its rivals."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pneumo_ros.compare.wording import times
+from pneumo_ros.wording.naming import interval, listed, resolved
+from pneumo_ros.wording.table import Table
+
+
+@dataclass(frozen=True)
+class ParameterWords:
+    """A fitted parameter; `name` is its name in the machine file, `key` the same without the effect."""
+
+    key: str
+    name: str
+    meaning: str
+    value: str
+    interval: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class AdditionWords:
+    """An effect that was added; `error` is the held-out error without and with it, `rivals` a sentence or empty."""
+
+    effect: str
+    t: str
+    error: str
+    parameters: tuple[ParameterWords, ...]
+    rivals: str
+
+
+def additions(added: Sequence[Mapping[str, Any]]) -> tuple[AdditionWords, ...]:
+    """The entries of `added` in the JSON of `diagnose`."""
+    return tuple(_addition(one) for one in added)
+
+
+def _addition(one: Mapping[str, Any]) -> AdditionWords:
+    effect, rivals = str(one["effect"]), one.get("indistinguishable_from", ())
+    said = f"These recordings cannot distinguish {effect} from {listed(rivals, 'or')}: each explains them as well."
+    return AdditionWords(
+        effect,
+        f"{one['t']:.1f}" if "t" in one else "-",
+        f"{times(one['holdout_error_before'])} -> {times(one['holdout_error_after'])}",
+        tuple(parameter(effect, key, value) for key, value in one["parameters"].items()),
+        said if rivals else "",
+    )
+
+
+def parameter(effect: str, key: str, one: Mapping[str, Any]) -> ParameterWords:
+    """A parameter of an effect from its JSON, with the decimals that its uncertainty leaves."""
+    std = math.inf if one["std"] is None else one["std"]
+    least, most = (sign * math.inf if one.get(end) is None else one[end] for end, sign in (("least", -1), ("most", 1)))
+    span = interval(one["value"], std, least, most)
+    unit = "" if one["unit"] == "1" else one["unit"]
+    return ParameterWords(key, f"{effect}.{key}", one.get("meaning", ""), resolved(one["value"], std), span, unit)
+
+
+def with_rivals(one: Mapping[str, Any]) -> str:
+    """An added effect within a sentence."""
+    rivals = one["indistinguishable_from"]
+    return str(one["effect"]) + (f" (or {listed(rivals, 'or')}, which explains as much)" if rivals else "")
+
+
+def additions_table(added: Sequence[AdditionWords], error: str = "held-out error") -> Table:
+    """A row for each parameter of what was added; `error` says what the errors are."""
+    rows: list[tuple[str, ...]] = []
+    for one in added:
+        first: tuple[str, ...] = (one.effect, one.t, one.error)
+        for p in one.parameters:
+            rows.append((*first, p.key, p.value, p.interval, p.unit))
+            first = ("", "", "")
+        if not one.parameters:
+            rows.append((*first, "(no parameter)", "", "", ""))
+    return Table("", ("Added", "t", error, "parameter", "value", "95 % interval", "unit"), tuple(rows), (1, 2, 4))
