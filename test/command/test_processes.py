@@ -19,12 +19,12 @@ def started(fleet: Fleet, name: str) -> bool:
 
 
 def wait_for(fleet: Fleet, name: str) -> None:
-    """Until a node is up, at most 20 s."""
-    for _ in range(200):
+    """Until a node is up, at most 90 s."""
+    for _ in range(900):
         fleet.wait(0.1)
         if started(fleet, name):
             return
-    pytest.fail("the node did not start within 20 s")
+    pytest.fail("the node did not start within 90 s")
 
 
 def test_a_node_runs_and_ends_with_zero(tmp_path: Path) -> None:
@@ -40,7 +40,7 @@ def test_a_node_that_fails_is_reported_with_its_last_words(tmp_path: Path) -> No
     with Fleet(tmp_path / "logs") as fleet:
         fleet.start("recorder", "pneumo_ros.ros.recorder", {"output": str(tmp_path / "bag")})
         with pytest.raises(PneumoError, match=r"the recorder ended with exit code \d: .*bag"):
-            fleet.wait(20.0)
+            fleet.wait(90.0)
 
 
 def test_nothing_is_left_behind_when_the_block_fails(tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_nothing_is_left_behind_when_the_demo_is_ended(number: signal.Signals, t
     arguments = ["demo", "--out", str(tmp_path / "demo"), "--seconds", "60"]
     with subprocess.Popen([sys.executable, "-m", "pneumo_ros", *arguments], stderr=subprocess.PIPE, text=True) as demo:
         children: list[int] = []
-        for _ in range(200):
+        for _ in range(900):
             time.sleep(0.1)
             listed = Path(f"/proc/{demo.pid}/task/{demo.pid}/children").read_text()
             children = [int(child) for child in listed.split()]
@@ -65,7 +65,7 @@ def test_nothing_is_left_behind_when_the_demo_is_ended(number: signal.Signals, t
                 break
         assert len(children) == 3
         demo.send_signal(number)
-        _, error = demo.communicate(timeout=40)
+        _, error = demo.communicate(timeout=200)
     assert demo.returncode == 128 + number
     assert "Traceback" not in error
     for child in children:

@@ -39,7 +39,7 @@ def chromium() -> Iterator[Any]:
     # A socket's path has 107 characters at most, and Chromium puts one below TMPDIR, which may lie deep in a checkout
     environment = {name: value for name, value in os.environ.items() if name != "TMPDIR"}
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=arguments, env=environment)
+        browser = playwright.chromium.launch(executable_path=program, args=arguments, env=environment, timeout=300_000)
         try:
             yield browser
         finally:
@@ -52,6 +52,7 @@ class Visit:
     def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True)
         self.page = context.new_page()
+        self.page.set_default_timeout(300_000)  # ms; a busy machine is no failure
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.page.on("request", lambda request: self.requests.append(request.url))
@@ -65,7 +66,7 @@ class Visit:
 
     def wait(self, expression: str, argument: Any = None) -> None:
         """Until an expression is true; the page's policy forbids what Playwright's own waiting does inside it."""
-        for _ in range(200):
+        for _ in range(2400):
             if self.page.evaluate(expression, argument):
                 return
             self.page.wait_for_timeout(50)

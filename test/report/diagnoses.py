@@ -1,10 +1,13 @@
 """Diagnoses to report: real searches, short because the catalogue is, of the model's own runs with sensor noise."""
 
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from identify import making
 from identify.making import POSITION_NOISE, PRESSURE_NOISE, QUANTUM, voltage
+from kept import kept
 
 from pneumo_ros.command.console import plain
 from pneumo_ros.command.diagnosis_json import diagnosis_dict
@@ -44,6 +47,12 @@ class Few(Library):
 
 @lru_cache(maxsize=3)
 def diagnosed(verdict: str) -> Outcome:
+    """The outcome with this verdict, computed once by the code as it is."""
+    outcome: Outcome = kept(verdict, lambda: diagnose_anew(verdict), Path(__file__), Path(making.__file__))
+    return outcome
+
+
+def diagnose_anew(verdict: str) -> Outcome:
     """A machine with viscous friction that the model lacks; with a load that no catalogue has; or with neither."""
     base = load_model()
     given = Model(base.composition, base.parameters, base.name, Few(KNOWN.get(verdict, ("viscous_friction",))))

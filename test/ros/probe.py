@@ -17,7 +17,8 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool, Trigger
 
-PATIENCE = 15.0  # s
+PATIENCE = 90.0  # s: a bound for what comes at once on an idle machine
+LOCKED = 30.0  # s, after which a node that does not end has locked up
 RELIABLE = QoSProfile(depth=5000, reliability=ReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 LEFT_BEHIND: list["Probe"] = []  # they would lock up the end of the process, too: `conftest` ends it without
@@ -67,12 +68,12 @@ class Probe:
         self._closed = True
         ending = threading.Thread(target=self._end, daemon=True)
         ending.start()
-        ending.join(2.0 * PATIENCE)
+        ending.join(LOCKED)
         if ending.is_alive():
             LEFT_BEHIND.append(self)
 
     def _end(self) -> None:
-        self._thread.join(PATIENCE)
+        self._thread.join(LOCKED)
         self._executor.shutdown()
         self.node.destroy_node()
         self.context.shutdown()

@@ -14,7 +14,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.records import Bag
 
 ROOT = Path(__file__).parents[2]
-PATIENCE = 30.0  # s
+PATIENCE = 90.0  # s
 
 
 class Running:

@@ -30,7 +30,7 @@ def test_two_cylinders_at_once_each_go_where_they_should(tmp_path: Path) -> None
                 processes.append(stack.enter_context(running(*command, cwd=tmp_path)))
             probes[name] = stack.enter_context(probe(name))
         for name, one in probes.items():
-            one.wait(partial(settled, one, wanted[name]), f"rest at {wanted[name]} m", 20.0)
+            one.wait(partial(settled, one, wanted[name]), f"rest at {wanted[name]} m")
             message = one.heard["joint_states"][-1]
             assert list(message.name) == [f"{name}_piston"]
             assert len(message.velocity) == 0

@@ -22,7 +22,7 @@ from pneumo_ros.records import Recording, read_recording, read_topics
 from pneumo_ros.runs.run import make_run
 
 AXIS = load_model("axis")
-TRIALS = tuple(Trial(name, Constant(volts), 2.0, 5.0, 0.5) for name, volts in (("right", 1.0), ("left", -1.0)))
+TRIALS = tuple(Trial(name, Constant(volts), 20.0, 20.0, 0.5) for name, volts in (("right", 1.0), ("left", -1.0)))
 PROGRAMME = Programme("test", "scripted", -0.4, 0.4, 0.5, 2.0, 2.0, TRIALS, 0.3)
 
 

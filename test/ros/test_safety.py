@@ -24,7 +24,7 @@ class Rig:
         self.simulator, self.controller = self.start("simulator", publish_rate=RATE), self.start("controller")
         self.probe = AxisProbe(PLACE)
         stack.callback(self.probe.close)
-        self.probe.wait(lambda: self.probe.heard["valve/command"], "a command", 30.0)
+        self.probe.wait(lambda: self.probe.heard["valve/command"], "a command")
 
     def start(self, name: str, **parameters: object) -> Running:
         """A node of this package in the namespace."""

@@ -83,15 +83,17 @@ def test_it_moves_as_the_model_says(axis: Probe) -> None:
 
 def test_the_valve_closes_when_commands_stop(axis: Probe) -> None:
     before = int(axis.health("simulator")[1]["valve_closures"])
-    axis.send(2.0, 0.5)
-    assert axis.heard["joint_states"][-1].velocity[0] > 0.05
-    time.sleep(0.15)  # command_timeout is 0.1 s
+    for _ in range(100):
+        axis.send(2.0, 0.2)
+        if axis.heard["joint_states"][-1].velocity[0] > 0.05:
+            break
+    axis.wait(lambda: float(axis.health("simulator")[1]["voltage_V"]) == 0.0, "a closed valve")
     pressures = [axis.more("chamber_a/pressure")[0].fluid_pressure]
     axis.wait(lambda: abs(axis.heard["joint_states"][-1].velocity[0]) < 1e-3, "rest")
     pressures.append(axis.more("chamber_a/pressure")[0].fluid_pressure)
     _, values = axis.health("simulator")
     assert float(values["voltage_V"]) == 0.0
-    assert int(values["valve_closures"]) == before + 1
+    assert int(values["valve_closures"]) > before  # a late command of the test closes it, too
     assert max(pressures) < 6.9e5  # an open valve would have filled it to the supply's 7 bar
 
 
@@ -178,13 +180,13 @@ def test_effects_are_switched_under_way(axis: Probe) -> None:
         messages = [json.loads(message.data) for message in axis.heard["description"]]
         return any(message["model"]["effects"] == without for message in messages)
 
-    axis.wait(switched, "a description without quadratic_drag", 30.0)
+    axis.wait(switched, "a description without quadratic_drag")
     axis.send(2.0, 0.2)
     assert max(message.velocity[0] for message in axis.heard["joint_states"]) > 0.5  # the drag had set the top speed
     assert np.abs(np.diff(positions(axis.heard["joint_states"]))).max() < 0.002 * 5.0
     assert "quadratic_drag.coefficient" not in axis.names("simulator")
     assert axis.set("simulator", effects=list(AXIS.effects)) == (True, "")
-    axis.wait(lambda: "quadratic_drag" in axis.heard["description"][-1].data, "the old effects", 30.0)
+    axis.wait(lambda: "quadratic_drag" in axis.heard["description"][-1].data, "the old effects")
     assert axis.get("simulator", "quadratic_drag.coefficient") == AXIS["quadratic_drag.coefficient"]
 
 

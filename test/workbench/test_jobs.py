@@ -20,7 +20,7 @@ def begun(tab: Tab, served: Served) -> None:
     """A long job goes on."""
     tab.press("Diagnose")
     tab.see("#job-says", "Diagnosing")
-    for _ in range(100):
+    for _ in range(1200):
         if "diagnose" in verbs_of(served):
             return
         tab.page.wait_for_timeout(100)
