@@ -99,6 +99,16 @@ class Probe:
         self.wait(lambda: len(self.heard[topic]) >= have + count, f"{count} more on {topic}")
         return self.heard[topic][have : have + count]
 
+    def quiet(self, topic: str, seconds: float = 0.3) -> None:
+        """Until nothing has come on a topic for so long."""
+
+        def still() -> bool:
+            have = len(self.heard[topic])
+            time.sleep(seconds)
+            return len(self.heard[topic]) == have
+
+        self.wait(still, f"silence on {topic}")
+
     def health(self, name: str) -> tuple[str, dict[str, str]]:
         """Message and values of the next diagnostics of node `name` (with its namespace)."""
         begin = len(self.heard["/diagnostics"])

@@ -181,8 +181,12 @@ def test_effects_are_switched_under_way(axis: Probe) -> None:
         return any(message["model"]["effects"] == without for message in messages)
 
     axis.wait(switched, "a description without quadratic_drag")
-    axis.send(2.0, 0.2)
-    assert max(message.velocity[0] for message in axis.heard["joint_states"]) > 0.5  # the drag had set the top speed
+
+    def fast() -> bool:
+        axis.send(2.0, 0.05)
+        return max(message.velocity[0] for message in axis.heard["joint_states"]) > 0.5
+
+    axis.wait(fast, "more than 0.5 m/s: the drag had set the top speed")
     assert np.abs(np.diff(positions(axis.heard["joint_states"]))).max() < 0.002 * 5.0
     assert "quadratic_drag.coefficient" not in axis.names("simulator")
     assert axis.set("simulator", effects=list(AXIS.effects)) == (True, "")
@@ -193,13 +197,14 @@ def test_effects_are_switched_under_way(axis: Probe) -> None:
 def test_pause_holds_step_goes_one_sample_and_reset_starts_again(axis: Probe) -> None:
     axis.send(2.0, 0.3)
     assert axis.pause(True).success
-    time.sleep(0.1)
+    axis.quiet("joint_states")
     axis.heard["joint_states"].clear()
     axis.send(2.0)
     assert axis.trigger("simulator/step").success
     assert axis.trigger("simulator/step").success
-    time.sleep(0.1)
     stepped = axis.heard["joint_states"]
+    axis.wait(lambda: len(stepped) >= 2, "two samples")
+    axis.quiet("joint_states")
     assert len(stepped) == 2
     moved = stepped[1].position[0] - stepped[0].position[0]
     assert moved == pytest.approx(0.002 * stepped[0].velocity[0], rel=0.1)
