@@ -1,1 +1,1 @@
-"""What `pneumo diagnose` and `pneumo add` run: which physical effect a model lacks, ranked, confirmed and added."""
+"""`pneumo diagnose` and `pneumo add`: the physical effects that a model lacks, ranked, confirmed and added."""

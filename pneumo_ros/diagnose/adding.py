@@ -1,4 +1,4 @@
-"""Effects added by name: what the model has and what is new, fitted to recordings together.
+"""Effects added by name: the parameters of the model and of the new effects, fitted to recordings together.
 
 First along the measured signals, where candidates start from several shapes and sizes; then by multiple shooting
 (`polishing`), which alone determines when the piston breaks away.
@@ -27,7 +27,7 @@ ROUGHLY = 40  # enough for the model without the effects, whose fit is slow and 
 
 @dataclass(frozen=True)
 class Adding:
-    """What adding effects brought: refitted without and with them, and how both predict the runs judged by."""
+    """The result of adding effects: the model refitted without and with them, and how both predict the judged runs."""
 
     effects: tuple[str, ...]
     base: Model
@@ -39,11 +39,11 @@ class Adding:
     errors: tuple[float, float, float]  # typical error over the noise floor: as given, refitted, with the effects
     train: tuple[str, ...] = ()
     judged: tuple[str, ...] = ()
-    late: float = 0.0  # s, by which a measured force was put off, as positions come after it
+    late: float = 0.0  # s, by which a measured force was delayed, as positions are recorded after it
 
     @property
     def held_out(self) -> bool:
-        """Whether the runs judged by took no part in the fit."""
+        """Whether the judged runs took no part in the fit."""
         return not set(self.train) & set(self.judged)
 
 
@@ -56,16 +56,16 @@ def add(
     threads: int = 2,
     progress: Progress | None = None,
 ) -> Adding:
-    """Add `effects` to `model`, refit all that may move to `train`, and predict `held`, or `train` where it is empty.
+    """Add `effects` to `model`, refit all free parameters to `train`, and predict `held`, or `train` if it is empty.
 
-    Raises UsageError for no run, no effect, an unknown one, and one that the model has or that does not fit beside
-    its others; DataError when a run does not fit the model.
+    Raises UsageError for no run, no effect, an unknown effect, an effect that the model has, and an effect that
+    conflicts with its others; DataError when a run does not fit the model.
     """
     check_addable(model, effects)
     if not train:
         raise UsageError("effects are fitted to recordings; give at least one")
     tell = progress or (lambda share, text: None)
-    tell(0.0, "refitting what the model has")
+    tell(0.0, "refitting the model as given")
     late = lateness(model, train) if EFFECT not in effects else 0.0
     train, held = ([later(run, late) for run in runs] for runs in (train, held))
     fading = [name for name in effects if coordinates(model.library.find(name))]
@@ -124,7 +124,7 @@ def _part(tell: Progress, first: float, last: float, what: str) -> Progress:
 
 
 def estimates_along(fitter: Fitter, model: Model) -> dict[str, Estimate]:
-    """Estimates of what is free in a model that `fitter` fitted, against what was known before."""
+    """Estimates of the free parameters of a model that `fitter` fitted, against their priors."""
     known = fitter.known(model)
     spread = fitter.deviations(model)
     each = zip(known.names, known.centre.tolist(), known.prior.tolist(), strict=True)

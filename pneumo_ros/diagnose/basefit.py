@@ -25,16 +25,16 @@ Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 8, 12  # sets of slopes, and rounds with each of them
 FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
-LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: a smaller gain is not worth another round
+LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: after a smaller gain there is no other round
 SHARES = (1.0, 0.3, 0.1)  # of a step, tried at once
-REWEIGHTED = 3  # least-squares solutions of a round, each with the weights of the one before
+REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the residual of the previous solution
 
 
 @dataclass(frozen=True)
 class Known:
-    """What is known before any data of the parameters that may move: centres, standard deviations; arrays (free,).
+    """Priors of the free parameters: centres and standard deviations; arrays (free,).
 
-    `step`: by how much each is moved to see what it does.
+    `step`: finite-difference step of each parameter.
     """
 
     names: tuple[str, ...]
@@ -57,7 +57,7 @@ class Fitted:
 
 
 def strain(offset: Array) -> float:
-    """Log likelihood that parameters cost by their priors; offset (free,): how far they are from the centres."""
+    """Log likelihood lost to the priors; offset (free,): distance of the parameters from the prior centres."""
     return 0.5 * float(np.sum(offset**2))
 
 
@@ -76,11 +76,11 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
 
 
 def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS) -> Fitted:
-    """Gauss-Newton from `model`, within what is known of its parameters.
+    """Gauss-Newton from `model`, within the priors of its parameters.
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
-    model is visited twice. Slopes are renewed only where those of an earlier model bring no more: they hardly change,
-    and cost most. Rounds end when renewed slopes bring no more, at the latest after `iterations` sets of slopes and
+    model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
+    cost most. Rounds end when renewed slopes give no further gain, at the latest after `iterations` sets of slopes and
     `ROUNDS_EACH` rounds for each of them.
     """
     descent = _Descent(evidence, known, model)
@@ -96,7 +96,7 @@ def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = I
 
 
 class _Descent:
-    """A model on its way to the best fit: its residual, the slopes taken last, and what each step gained."""
+    """A model on its way to the best fit: its residual and the latest slopes."""
 
     def __init__(self, evidence: Evidence, known: Known, model: Model) -> None:
         self.evidence, self.known, self.model = evidence, known, model
@@ -105,15 +105,15 @@ class _Descent:
         self.residual = self.slopes = np.empty(0)
 
     def renew(self) -> None:
-        """Take slopes at the model reached."""
+        """Compute the slopes at the current model."""
         self.residual, self.slopes = slopes(self.evidence, self.model, self.known)
 
     def little(self, gain: float) -> bool:
-        """Whether a gain in log likelihood is not worth another round."""
+        """Whether a gain in log likelihood is too small for another round."""
         return gain < LITTLE + SMALL_SHARE * _loss(self.evidence, self.residual)
 
     def step(self) -> tuple[float, float]:
-        """Take the best of some shares of the next step, if it gains; the gain, and what the slopes promised."""
+        """Take the best of some shares of the next step, if it gains; the gain, and the gain the slopes predicted."""
         names, prior = self.known.names, self.known.prior
         theta = np.array([self.model[n] for n in names])
         offset = (theta - self.known.centre) / prior
@@ -132,7 +132,7 @@ class _Descent:
         return gain, promised
 
     def _wanted(self, theta: Array, offset: Array) -> tuple[Array, Array]:
-        """Step in priors by reweighted least squares within the ranges, and the residual that the slopes promise."""
+        """Step in priors by reweighted least squares within the ranges, and the residual that the slopes predict."""
         room = (self.low - theta) / self.known.prior, (self.high - theta) / self.known.prior
         after, x, ones = self.residual, np.zeros(len(theta)), np.ones(len(theta))
         scale = family_scales(self.evidence, self.residual)
@@ -144,7 +144,7 @@ class _Descent:
 
 
 def _objective(evidence: Evidence, residual: Array, offset: Array) -> float:
-    """What a fit maximises: the log likelihood with the scales that the residual itself has, and that of the priors."""
+    """The objective of a fit: the log likelihood with the scales of the residual itself, and that of the priors."""
     return log_likelihood(evidence, residual) - strain(offset)
 
 
@@ -155,14 +155,14 @@ def _loss(evidence: Evidence, residual: Array) -> float:
 
 
 def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> BaseFit:
-    """What hypotheses start from; `whole` is a model that holds `model` and every candidate."""
+    """The starting point of hypotheses; `whole` is a model that holds `model` and every candidate."""
     r, J = slopes(evidence, model, known)
     held = whole.with_parameters({n: v for n, v in model.parameters.items() if n in whole.parameters})
     return BaseFit(model, held, known.names, known.prior, known.offset(model), evidence, r, J)
 
 
 def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
-    """Base parameters' best shift beside a candidate's residual, what they leave, and its log likelihood."""
+    """Best shift of the base parameters given a candidate's residual, the residual after it, and its log likelihood."""
     after, shift = here, np.zeros(len(base.names))
     for _ in range(4):
         scale = family_scales(base.evidence, after)
@@ -174,11 +174,11 @@ def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
 
 
 def unaided(base: BaseFit) -> Hypothesis:
-    """What base parameters reach without any candidate, by one linear step like the candidates': nothing is missing."""
+    """The hypothesis that nothing is missing: base parameters alone, fitted by one linear step as beside candidates."""
     shift, after, value = at_best(base, base.residual)
     return Hypothesis("", (), np.empty(0), shift, after, value, relief=relief_of(base, shift))
 
 
 def relief_of(base: BaseFit, shift: Array) -> float:
-    """Log likelihood of the priors that the model's own parameters regain by a shift; bent laws do not count."""
+    """Log likelihood of the priors that the model's own parameters regain by a shift; freed laws do not count."""
     return strain(base.offset[base.own]) - strain((shift + base.offset)[base.own])

@@ -1,7 +1,7 @@
-"""Whether what remains on held-out recordings is the machine's own parameters having moved since the fitted ones.
+"""Whether the misfit of held-out recordings comes from machine parameters that changed since the fitted recordings.
 
-Friction repeats itself to a few per cent only, with temperature and wear; a law that is missing does not go away when
-other values are put into those that are there.
+Friction varies by a few per cent with temperature and wear. Other parameter values remove such a misfit; they do not
+remove the misfit of a missing law.
 """
 
 from collections.abc import Sequence
@@ -16,15 +16,15 @@ from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
-MOSTLY_GONE = 0.5  # of the mean square of what remains: less of it gone is not worth a word
-REMAINING = 0.5  # of the noise's mean square: less beyond it is noise, too
-NAMED = 0.01  # change of a parameter, of its value, that is named
+MOSTLY_GONE = 0.5  # share of the remaining mean square: a smaller reduction is not reported
+REMAINING = 0.5  # of the noise's mean square: a smaller excess over noise is noise, too
+NAMED = 0.01  # relative change of a parameter: a smaller change is not named
 
 
 @dataclass(frozen=True)
 class Moved:
-    """`share` of the mean square beyond noise that is gone once the model's own parameters are those of the held-out
-    recordings, and the parameters that moved: before and after, in their units.
+    """`share` of the mean square beyond noise that disappears when the model's own parameters are refitted to the
+    held-out recordings, and the parameters that changed: before and after, in their units.
     """
 
     share: float
@@ -32,9 +32,9 @@ class Moved:
 
 
 def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
-    """What refitting the parameters of `fitter.start` to the held-out recordings alone takes from `equation`.
+    """How far the misfit of `equation` falls when the parameters of `fitter.start` are refitted to held-out recordings.
 
-    Each may move by what is known of it. None where less than half of what remains is gone, or nothing remains.
+    Each parameter may move within its prior. None where the misfit falls by less than half, or is noise.
     """
     own = _own(fitter, model)
     other = fitter.noted(fit_base(fitter.held, model, own))
@@ -47,7 +47,7 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
 
 
 def _own(fitter: Fitter, model: Model) -> Known:
-    """The parameters that the start had, each known to be about where it is now."""
+    """The parameters of the start model, with priors centred at their present values."""
     known = fitter.known(model)
     own = np.array([name.partition(".")[0] in fitter.start.effects for name in known.names])
     names = tuple(name for name, mine in zip(known.names, own, strict=True) if mine)
@@ -55,5 +55,5 @@ def _own(fitter: Fitter, model: Model) -> Known:
 
 
 def _beyond_noise(model: Model, runs: Sequence[Run], equation: str) -> float:
-    """Mean square of an equation's residual over the noise's, less one."""
+    """Mean square of an equation's residual over the noise's, minus one."""
     return judge_equations([equation_residuals(model, run) for run in runs])[equation].ratio_to_noise ** 2 - 1.0

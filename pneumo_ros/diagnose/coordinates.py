@@ -1,4 +1,4 @@
-"""Coordinates in which candidates are fitted: sizes in typical ones, time constants and frequencies as logarithms."""
+"""Coordinates in which candidates are fitted: relative sizes, and logarithms of time constants and frequencies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,10 +12,10 @@ from pneumo_ros.plant.usual import usual_size
 Array = NDArray[np.float64]
 
 _FACTOR = 4.0  # between the shapes that are tried first
-_TUNE, _TUNED = 1.25, 7  # between frequencies that are tried, and how many either way: broad resonances overlap
+_TUNE, _TUNED = 1.25, 7  # factor between frequencies tried, and their number either way: broad resonances overlap
 _FREQUENCY = ("Hz", "rad/s")
-_WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size in typical ones, of the logarithm of a shape
-_FEW, _PROFILE = 3, 3.0  # sizes: of more, as along a profile, some are where no recording goes, and stay near neutral
+_WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size over its typical size, of the logarithm of a shape
+_FEW, _PROFILE = 3, 3.0  # most sizes of no profile; prior deviation in a profile, some of whose points have no data
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Coordinate:
     low: float
     high: float
     unit: str = ""
-    wide: float = _WIDE  # prior deviation of a size, in typical ones
+    wide: float = _WIDE  # prior deviation of a size, in typical sizes
 
     @property
     def logarithmic(self) -> bool:
@@ -45,22 +45,22 @@ class Coordinate:
 
     @property
     def tuned(self) -> bool:
-        """Whether the parameter is the frequency of something that rings: seen near its resonance, nowhere else."""
+        """Whether the parameter is a resonance frequency: it shows near the resonance only."""
         return self.logarithmic and not self.is_size and self.unit in _FREQUENCY
 
     @property
     def fading_frequency(self) -> bool:
-        """Whether the parameter is the frequency of something that lags, and the higher the less."""
+        """Whether the parameter is the corner frequency of a lag: the higher, the smaller the lag."""
         return self.logarithmic and self.is_size and self.unit in _FREQUENCY
 
     @property
     def share(self) -> bool:
-        """Whether a fading parameter fades itself, as a share does; of a frequency it is the inverse."""
+        """Whether the effect is linear in a fading parameter, as in a share, rather than in its inverse."""
         return self.unit == "1"
 
     @property
     def prior(self) -> float:
-        """Standard deviation of u before anything was measured."""
+        """Prior standard deviation of u."""
         return _NARROW if self.logarithmic else self.wide
 
     def value(self, u: float) -> float:
@@ -83,7 +83,7 @@ class Coordinate:
         return (value - (self.neutral or 0.0)) / self.scale
 
     def size(self, u: float) -> float:
-        """How much of an effect that is, in usual ones: 0 at neutral, 1 at the usual value."""
+        """Size of the effect in usual sizes: 0 at neutral, 1 at the usual value."""
         if not self.logarithmic or self.neutral is None:
             return u
         value, end, usual = self.value(u), self.neutral, self.typical
@@ -92,7 +92,7 @@ class Coordinate:
         return (1.0 / value - 1.0 / end) / (1.0 / usual - 1.0 / end)
 
     def grown(self, value: float, factor: float) -> float:
-        """The value of a size so many times larger; of one that fades out towards its upper bound the inverse grows."""
+        """The value of a size `factor` times larger; the inverse grows if the effect fades out at the upper bound."""
         u = self.u(value)
         return self.value(u - float(np.log(factor)) if self.logarithmic else factor * u)
 
@@ -116,20 +116,20 @@ def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
 
 
 def is_profile(effect: Sequence[Coordinate]) -> bool:
-    """Whether an effect has so many sizes that they are a profile, which can follow anything."""
+    """Whether an effect has so many sizes that they form a profile, which can follow any signal."""
     return sum(c.is_size for c in effect) > _FEW
 
 
 def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     p = effect.parameters[key]
     typical = p.default
-    if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: how much is usual?
+    if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: the usual size is needed
         typical = p.neutral + usual_size(effect, key)
     return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit)
 
 
 def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
-    """The sizes of an effect by kind: alike in unit, bounds and neutral value, as the two directions' of one thing."""
+    """The sizes of an effect by kind: of equal unit, bounds and neutral value, as for the two directions of motion."""
     found: dict[tuple[str, float | None, float, float], list[Coordinate]] = {}
     for c in effect:
         if c.is_size:
@@ -140,7 +140,7 @@ def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
 def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
     """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,).
 
-    Frequencies are tried more finely, beside the other shapes at four times the usual: much damping, broad resonances.
+    Frequencies are tried in finer steps, with the other shapes at four times the usual: damped, broad resonances.
     """
     usual = np.array([0.0 if c.logarithmic or not c.is_size else 1.0 for c in effect])
     shapes = [k for k, c in enumerate(effect) if not c.is_size and c.logarithmic]
@@ -155,5 +155,5 @@ def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
 
 
 def _moved(effect: tuple[Coordinate, ...], u: Array, which: list[int], factor: float) -> Array:
-    """u with some coordinates at that many times their usual value, as far as is allowed."""
+    """u with some coordinates at `factor` times their usual value, within their bounds."""
     return np.array([effect[k].clip(np.log(factor)) if k in which else x for k, x in enumerate(u)])

@@ -22,18 +22,18 @@ from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
-RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and gauges are known no better
+RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and sensor gains are known no better
 
 
 def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None) -> Outcome:
     """Which effects `model` lacks: refit, rank on `train`, confirm on `held`, add, repeat.
 
-    Both are sequences of runs of one machine, `held` is never fitted. Raises UsageError when either is empty,
-    DataError when a run does not fit the model.
+    All runs are of one machine; `held` is never fitted. Raises UsageError when either sequence is empty, DataError when
+    a run does not fit the model.
     """
     if not train or not held:
         raise UsageError(
-            "a diagnosis needs recordings to fit and others to judge by; give both, the latter by --holdout"
+            "a diagnosis needs recordings to fit and other recordings to judge by; give the latter by --holdout"
         )
     tell = progress or (lambda share, text: None)
     search = Search(model, train, held, lambda share, text: tell(0.8 * share, text))
@@ -121,7 +121,7 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
 
 
 def _latest(steps: Sequence[Step]) -> list[Candidate]:
-    """Each candidate as judged in the last round that tried it; what was added comes first."""
+    """Each candidate as judged in the last round that tried it; added candidates come first."""
     added = [step.added for step in steps if step.added]
     seen = {c.name: c for step in steps for c in step.candidates}
     seen |= {c.name: c for step in steps for c in step.rivals}  # of the round in which they tied
@@ -135,9 +135,9 @@ def _ranked(c: Candidate) -> Ranked:
 
 
 def remains(before: Comparison, after: Comparison) -> Unexplained | None:
-    """The worst of the equations that fail, or else leave more than noise, over the variable that explains it best.
+    """The worst failing equation, or else the worst with a misfit beyond noise, over its most explanatory variable.
 
-    None where noise explains what remains in all of them.
+    None where noise explains the misfit of all equations.
     """
     left = {n: e for n, e in after.equations.items() if significant(e)}
     if not left:

@@ -1,8 +1,8 @@
-"""The residuals of all equations along all runs, as one vector: what a candidate has to explain.
+"""The residuals of all equations along all runs, as one vector, which candidates have to explain.
 
 Families: the momentum while the piston slides [N], in windows of 100 and 40 ms; the chambers [kg/s], in windows of
-200 and 40 ms; and the breakaways [N], the force at slip against the static friction the model claims there and then.
-They are those of `equations.equations`; each comes with the noise that the sensors alone give it.
+200 and 40 ms; and the breakaways [N], the force at slip minus the model's static friction at that moment.
+The equations are those of `equations.equations`; each residual has its noise from the sensors alone.
 """
 
 from collections.abc import Sequence
@@ -24,16 +24,16 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
-BLOCK = 0.4  # s: errors within a block belong together
+BLOCK = 0.4  # s: errors within a block are correlated
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
 
 
 class Evidence:
     """Residual vectors of variants of a model along fixed runs.
 
-    What does not depend on the variant is made once: windows, their noise, which of them count. Arrays (residuals,):
+    Windows, their noise and which of them count do not depend on the variant and are made once. Arrays (residuals,):
     family (index into `names`), run and block index of each entry, its time [s], and the noise in the entry's unit.
-    `drive`: root mean square of the force that drives the piston [N].
+    `drive`: root mean square of the drive force on the piston [N].
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
@@ -56,15 +56,15 @@ class Evidence:
         return len(self.noise)
 
     def residual(self, model: Model) -> Array:
-        """What is measured minus what `model` claims, over noise (residuals,)."""
+        """Measured minus claimed by `model`, over noise (residuals,)."""
         return np.asarray(self.residuals(model, model.values[None])[0])
 
     def residuals(self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False) -> Array:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
 
-        `ranking`: as exact as ranking candidates asks for, in less time.
+        `ranking`: only as exact as the ranking of candidates needs, in less time.
         """
-        longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # or the last one is waited for
+        longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # else a long run ends last, alone
         with ThreadPoolExecutor(threads) as pool:
             made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
         whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
@@ -112,7 +112,7 @@ class RunEvidence:
         return result
 
     def _measured(self, model: Model, family: Family, states: Array) -> Measured:
-        """What an equation's residual takes from the frame's states alone."""
+        """The part of an equation's residual that depends on the frame's states alone."""
         if family.equation == "breakaway":
             return None
         if family.equation == "momentum":
@@ -129,13 +129,13 @@ class RunEvidence:
         return measured.value(mass, variant.claimed[:, 0])
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
-        """What the model with parameters `q` shows at the given states (rows, states) of these samples."""
+        """Outputs of the model with parameters `q` at the given states (rows, states) of these samples."""
         out = np.empty((len(rows), len(model.composition.observed)))
         model.kernel.observe(np.ascontiguousarray(states), q, self.held[rows], self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
-        """Largest force that friction held before each slip, minus the static friction claimed there and then."""
+        """Largest force that friction held before each slip, minus the static friction claimed at that moment."""
         if not self.breakaways:
             return np.empty(0)
         rows = np.concatenate(self.spans)

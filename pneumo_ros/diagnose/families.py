@@ -30,22 +30,22 @@ class Family:
     usable: NDArray[np.bool_] = field(repr=False)
     bump: Bump | None = field(repr=False, default=None)
     breakaways: tuple[Breakaway, ...] = ()
-    slip_times: tuple[float, ...] = ()  # s, of each of them
+    slip_times: tuple[float, ...] = ()  # s, of each breakaway
 
     @property
     def window(self) -> Bump:
-        """The window's shape; not of breakaways."""
+        """The window's shape; breakaways have none."""
         assert self.bump is not None
         return self.bump
 
     @property
     def name(self) -> str:
-        """As `momentum 40 ms`, `breakaway`."""
+        """The family's name, as `momentum 40 ms` or `breakaway`."""
         return f"{self.equation} {1e3 * self.width:.0f} ms" if self.width else self.equation
 
 
 def families(model: Model, frame: Frame, index: int) -> list[Family]:
-    """All families of one run along what `model` claims; `index` is the run's."""
+    """All families of one run, with noise by the claims of `model`; `index` is the run's."""
     run, (states, claimed) = frame.run, follow(model, frame)
     found, momentum = [], Momentum(model, run, states)
     for width in WINDOWS["momentum"]:

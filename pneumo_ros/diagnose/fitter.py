@@ -1,4 +1,4 @@
-"""A model and what it may gain, fitted to the evidence of recordings within what is known of its parameters."""
+"""A model and its candidates, fitted to the evidence of recordings within the priors of their parameters."""
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, lru_cache
@@ -27,35 +27,35 @@ from pneumo_ros.shooting.refit import default_free
 
 Array = NDArray[np.float64]
 
-BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: within 5 % everywhere alike, and what is usual of its changes
-PROBE_SHARE = 0.005  # of a prior, or of what is usual of an effect
-AS_MUCH = 3.0  # log likelihood: by no more may a simpler effect explain less
+BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: deviation of a uniform prior within 5 %, and its usual change
+PROBE_SHARE = 0.005  # of a usual change of a base parameter, or of a usual size of an effect
+AS_MUCH = 3.0  # log likelihood: the most that a simpler effect may lose
 SCREENED = 50.0  # s of recordings by which candidates are ranked first
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
 
 class Fitter:
-    """The evidence of training and held-out runs, and fits of `start` and of what grows from it."""
+    """The evidence of training and held-out runs, and fits of `start` and of models with more effects."""
 
     def __init__(
         self, start: Model, train: Sequence[Run], held: Sequence[Run] = (), candidates: Sequence[str] | None = None
     ) -> None:
-        """`candidates`: names of all that may be added; by default whatever the model lacks."""
+        """`candidates`: names of the effects that may be added; by default all that the model lacks."""
         self.start, self._held_runs = start, held
         found = missing(start) if candidates is None else _coordinates(start, candidates)
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train = Evidence(start, train)
         self.limits: list[str] = []  # a sentence for every loop that ended at its bound
-        self.fit = lru_cache(2)(self._fit)  # the last ones asked for are kept
+        self.fit = lru_cache(2)(self._fit)  # the last two fits are kept
         self._at_best = lru_cache(1)(lambda model: self._likelihood(self.refit(model)))
 
     @cached_property
     def held(self) -> Evidence:
-        """The evidence of the held-out runs, which only those need who judge by it."""
+        """The evidence of the held-out runs, made only when it is needed."""
         return Evidence(self.start, self._held_runs)
 
     def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
-        """Of the free parameters of `model` but those `fixed`: the start's to a few per cent, added ones hardly."""
+        """Priors of the free parameters of `model` except `fixed`: narrow for the start's, wide for added effects'."""
         names, centre, prior, step = [], [], [], []
         for name in default_free(model):
             section, _, _key = name.partition(".")
@@ -76,7 +76,7 @@ class Fitter:
         return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
 
     def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:
-        """All free parameters but those `fixed` fitted to the training evidence."""
+        """The model with all free parameters except `fixed` fitted to the training evidence."""
         return self.noted(fit_base(self.train, model, self.known(model, fixed), iterations))
 
     def noted(self, fitted: Fitted) -> Model:
@@ -86,10 +86,10 @@ class Fitter:
         return fitted.model
 
     def simplest(self, model: Model, name: str) -> Model:
-        """The model, or one refitted with a size of its effect `name` neutral, if that explains as much.
+        """The model, or the model refitted with one size of its effect `name` neutral, if that explains as much.
 
-        Asked of sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other
-        over wide ranges, and a fit of both may end in a valley far from the true one.
+        Only for sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other
+        over wide ranges, and a fit of both may end in a valley far from the true values.
         """
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
@@ -103,25 +103,25 @@ class Fitter:
         return best
 
     def against(self, model: Model, name: str, values: Mapping[str, float]) -> float:
-        """Log likelihood that the training evidence loses by an effect of these `values` beside `model`.
+        """Log likelihood that the training evidence loses when an effect of these `values` is added to `model`.
 
-        With it and without, all else is at its best.
+        All other parameters are refitted, with the effect and without.
         """
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
         return self._at_best(model) - self._likelihood(larger, values)
 
     def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
-        """Log likelihood of the training evidence and of what is known of the parameters but those `fixed`."""
+        """Log likelihood of the training evidence and of the priors of the parameters except `fixed`."""
         return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model, fixed).offset(model))
 
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
-        """The model on training and held-out evidence, the laws of `bent` (all that were added) free in shape."""
+        """The model on training and held-out evidence; the laws of `bent` (default: all added) are free in shape."""
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
         names, (usual, others) = self.added(model) if bent is None else bent, self.conditions
         return freed(train, names, usual), freed(held, names, others)
 
     def ranking_fit(self, model: Model) -> BaseFit:
-        """The model on the part of the training evidence by which candidates are ranked first; as free as in `fits`."""
+        """The model on the part of the training evidence for the first ranking; laws as free in shape as in `fits`."""
         if self.part is self.train:
             return self.fits(model)[0]
         seen = relative(conditions(self.part), conditions(self.train))
@@ -129,7 +129,7 @@ class Fitter:
 
     @cached_property
     def part(self) -> Evidence:
-        """The evidence by which candidates are ranked first: a share of every run, all of them where they are short."""
+        """The evidence for the first ranking of candidates: a share of every run, or all runs where they are short."""
         some = stretches(self.train.runs, SCREENED)
         return Evidence(self.start, some) if some else self.train
 
@@ -139,7 +139,7 @@ class Fitter:
 
     @cached_property
     def conditions(self) -> tuple[Array, Array]:
-        """Under which the residuals of both arise, relative to what is usual of those fitted."""
+        """Conditions of the training and held-out residuals, relative to the mean and scatter of the training ones."""
         here = conditions(self.train)
         return relative(here, here), relative(conditions(self.held), here)
 
@@ -150,7 +150,7 @@ class Fitter:
     def deviations(self, model: Model) -> dict[str, float]:
         """Cluster-robust standard deviation of every free parameter of `model`, infinite where not determined.
 
-        Beside a parameter that its range holds, the others are as sure as if it were known.
+        A parameter at the end of its range counts as known for the deviations of the others.
         """
         base = self.fit(model)
         w = weights(self.train, base.residual, family_scales(self.train, base.residual))
@@ -162,18 +162,18 @@ class Fitter:
         return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
 
     def extended(self, model: Model, h: Hypothesis) -> Model:
-        """The model with the hypothesis' effect in it, base parameters where the hypothesis had them."""
+        """The model with the hypothesis' effect and the hypothesis' base parameters."""
         known, moved = self.known(model), {}
         for n, shift, p in zip(known.names, h.shift[: len(known.names)], known.prior, strict=True):
             s = model.specification(n)
             moved[n] = min(max(model[n] + shift * p, s.low), s.high)
-        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # bent by what was missing
+        moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # biased while the effect was missing
         values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
         return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)
 
 
 def _spread(A: Array, e: Array, evidence: Evidence) -> Array:
-    """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, no less than noise alone gives."""
+    """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, at least those of noise alone."""
     ridge = np.ones(A.shape[1])
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))
     robust = cluster_robust(A, e, evidence.block, bread, ridge)

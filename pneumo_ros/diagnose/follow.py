@@ -1,4 +1,4 @@
-"""Along the measured motion: the states a model claims, with what the sensors do to them taken back."""
+"""The states a model claims along the measured motion, corrected for the model's sensor effects."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,24 +18,24 @@ from pneumo_ros.runs.sensors import driven_lanes
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-LANES_AT_ONCE = 32  # parameter vectors driven at once: as many as fit in memory beside each other
-QUICK = 2  # parts of a sample in quick evaluations: differences of two of them are as good as of two exact ones
-SHORT = 1.01e-3  # s: a sample as short is one part where candidates are ranked, which errs by a hundredth of an effect
+LANES_AT_ONCE = 32  # parameter vectors driven at once: as many as fit in memory together
+QUICK = 2  # parts of a sample in quick evaluations: their errors cancel in differences of two variants
+SHORT = 1.01e-3  # s: so short a sample is one part when candidates are ranked; the error is 1 % of an effect
 LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
-_SLIP = 6.0  # noise deviations of the position: a piston that stays within them rests
+_SLIP = 6.0  # noise deviations of the position: a piston that moves less rests
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a run says of the frame's states: measured ones with smoothed velocity (n, 2 or 4)."""
+    """The frame's states in a run: measured ones with smoothed velocity (n, 2 or 4)."""
 
     run: Run
     states: Array
 
 
 def frame_of(run: Run, force_driven: bool) -> Frame:
-    """Measured position, smoothed velocity and measured pressures; a piston at rest has exactly no velocity."""
+    """Measured position, smoothed velocity and measured pressures; the velocity at rest is exactly 0."""
     states = measured_frame(run, force_driven)
     states[resting(run), 1] = 0.0
     return Frame(run, states)
@@ -64,7 +64,7 @@ def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Followed:
-    """What one parameter vector makes of a run: its index, states (n, states), claimed derivatives of v, p_a, p_b.
+    """A run by one parameter vector: its index, states (n, states), claimed derivatives of v, p_a, p_b.
 
     `as_measured`: whether the frame's states are the measured ones.
     """
@@ -76,10 +76,10 @@ class Followed:
 
 
 def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
-    """What each parameter vector makes of a run, in any order.
+    """States and claimed derivatives of a run by each parameter vector, in any order.
 
-    Where the vector makes sensors differ from the states, the measured states are first corrected for what it claims
-    the sensors do: x = measured - (observed(x) - x), twice. `ranking`: as exact as ranking candidates asks for.
+    Where a vector has sensor effects, the measured states are first corrected for them:
+    x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs.
     """
     parts = 1 if ranking and frame.run.sample_time < SHORT else QUICK
     corrects = sensing(model, parameters)
@@ -95,7 +95,7 @@ def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> t
 
 
 def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
-    """Lanes driven along the measured states less what sensors do: those with the same sensors along the same."""
+    """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors."""
     first, group = alike_sensors(model, parameters)
     own = parameters[first]
     given, own_states, own_mean = driven_lanes(
@@ -132,14 +132,14 @@ def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Ar
 
 
 def reads_wrong(effect: type[Effect]) -> bool:
-    """Whether an effect makes sensors show something else than a state."""
+    """Whether an effect makes a sensor differ from its state."""
     return any(signal in SENSED for function in effect.functions.values() for signal in function.writes)
 
 
 def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
-    """Parameter vectors (variants, parameters) in groups whose sensors do the same: the first of each, and the group.
+    """Parameter vectors (variants, parameters) in groups of equal sensors: the first of each group, and the groups.
 
-    Sensors that read more than the frame's states and what is their own may do something else in every lane.
+    Sensors that read more than the frame's states and their own states and parameters may differ in every lane.
     """
     frame = {"y", "v", "p_a", "p_b", *SENSED}
     columns: list[int] = []
@@ -153,7 +153,7 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
 
 
 def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
-    """Which parameter vectors (variants, parameters) make any sensor of the model show something else than a state."""
+    """Which parameter vectors (variants, parameters) make any sensor of the model differ from its state."""
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
     for effect in filter(reads_wrong, model.composition.effects):

@@ -1,10 +1,10 @@
-"""Freedom of shape: a machine's law need not be the catalogue's, which must not be taken for another effect.
+"""Freedom of shape: a machine's law may differ from the catalogue's, and the difference must not pass for an effect.
 
-A seal's friction grows less than in proportion to the pressures, a spring hardens, a leak is an orifice. So an effect
-that was added may act more or less than its law says where the piston is elsewhere, faster, under other pressures or
-another input: a (1 + sum of e_k x_k), x_k the deviations of what is measured from its mean, in standard ones, and their
-squares less 1. The e_k stand beside the base parameters while further candidates are judged; the model that is refitted
-and that predicts keeps the catalogue's law. What sensors do has no such freedom: an offset is an offset.
+A seal's friction grows less than in proportion to the pressures, a spring hardens, a leak is an orifice. So an added
+effect a may deviate from its law with position, speed, pressures and input: a (1 + sum of e_k x_k), x_k the measured
+conditions minus their mean, in standard deviations, and their squares minus 1. The e_k are free together with the base
+parameters while further candidates are judged; the model that is refitted and predicts keeps the catalogue's law.
+Sensor effects are not free in shape: an offset is an offset.
 """
 
 from collections.abc import Sequence
@@ -20,11 +20,11 @@ from pneumo_ros.diagnose.hypothesis import BaseFit
 
 Array = NDArray[np.float64]
 
-LAW_SPREAD = 0.1  # standard deviation of e_k: a law is known to a tenth over the usual range of what it depends on
+LAW_SPREAD = 0.1  # standard deviation of e_k: a law is known to 10 % over the usual range of its variables
 
 
 def conditions(evidence: Evidence) -> Array:
-    """Under which each residual arises, in the middle of its window: position, speed, pressures, size of the input.
+    """Conditions of each residual in the middle of its window: position, speed, pressures, magnitude of the input.
 
     (residuals, 3 or 5).
     """
@@ -37,7 +37,7 @@ def conditions(evidence: Evidence) -> Array:
 
 
 def relative(values: Array, others: Array) -> Array:
-    """Deviations x from the mean of others, in their standard ones, and x^2 - 1; what never changes is left out."""
+    """Deviations x from the mean of `others`, in their standard deviations, and x^2 - 1; constants are left out."""
     middle, spread = others.mean(axis=0), others.std(axis=0)
     moving = spread > 1e-9 * np.maximum(np.abs(middle), 1e-12)
     x = (values[:, moving] - middle[moving]) / spread[moving]
@@ -45,7 +45,7 @@ def relative(values: Array, others: Array) -> Array:
 
 
 def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
-    """The fit with the e_k of each effect that was added as further base parameters; seen: `relative` conditions."""
+    """The fit with the e_k of each added effect as further base parameters; seen: `relative` conditions."""
     added = [name for name in added if not reads_wrong(fit.model.library.find(name))]
     if not added:
         return fit
@@ -69,7 +69,7 @@ def _seen(part: RunEvidence, time: Array) -> Array:
 
 
 def _acting(fit: BaseFit, effect: str) -> Array:
-    """What an effect changes in each residual (residuals,), by its slopes at its sizes."""
+    """Change of each residual by an effect (residuals,), by its slopes at its sizes."""
     change = np.zeros(len(fit.residual))
     for c in coordinates(fit.model.library.find(effect)):
         if c.is_size and c.name in fit.names:

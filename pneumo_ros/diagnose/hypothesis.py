@@ -22,26 +22,26 @@ from pneumo_ros.shooting.robust import huber_loss, huber_weight
 Array = NDArray[np.float64]
 
 FAR = 50.0  # usual sizes: no residual counts as larger
-SCALE_TAIL = 5.0  # scales: beyond, an error counts less than squared
-OVERLAP = 0.6  # windows overlap: weight of each, so that together they count about once
+SCALE_TAIL = 5.0  # scales: beyond, the loss of an error is linear
+OVERLAP = 0.6  # weight of each window, as windows overlap and together count about once
 COORDINATE_PROBE = 0.05  # u: finite-difference step of a candidate's coordinate
 BASE = ("dead_zone", "arctan_flow", "lugre_friction", "rod_atmospheric_force", "end_stop", "quadratic_drag")
 
 
 def robust_scale(size: Array) -> float:
-    """Root mean square of sizes (n,), each counted as fifty usual ones at most.
+    """Root mean square of sizes (n,), each limited to fifty usual sizes.
 
-    No tighter: an effect that shows in a few windows only (at slow motion, near an end) must not count as an outlier.
+    The limit is wide: an effect that shows in a few windows only (slow motion, near an end) is no outlier.
     """
     return float(np.sqrt(np.mean(np.minimum(size, FAR * usual(size)) ** 2))) if len(size) else 0.0
 
 
 def usual(size: Array) -> float:
-    """The usual one of sizes (n,): the deviation of Gaussian errors with their median, at least that of noise."""
+    """Usual size of errors of sizes (n,): the deviation of Gaussian errors with their median, at least the noise."""
     return max(1.4826 * float(np.median(size)), 1.0) if len(size) else 1.0
 
 
-FLOOR = {"breakaway": 0.2}  # the spread given to breakaways is generous: their own scatter says more
+FLOOR = {"breakaway": 0.2}  # least scale: the stated spread of breakaways is larger than their scatter
 
 
 def family_scales(evidence: Evidence, residual: Array) -> Array:
@@ -66,7 +66,7 @@ def weights(evidence: Evidence, residual: Array, scale: Array) -> Array:
 
 
 def log_likelihood(evidence: Evidence, residual: Array) -> float:
-    """Of Gaussian errors whose family scales are what they are, windows counted once; noise bounds the scales."""
+    """Log likelihood of Gaussian errors with the residual's own family scales, at least noise; windows count once."""
     return float(np.sum(family_likelihoods(evidence, residual)))
 
 
@@ -80,7 +80,7 @@ def family_likelihoods(evidence: Evidence, residual: Array) -> Array:
 
 @dataclass
 class Hypothesis:
-    """A candidate under fit: u (coordinates,), shift of base parameters in priors (base,), and what it leaves."""
+    """A candidate under fit: u (coordinates,), shift of base parameters in priors (base,), and the residual."""
 
     name: str
     coordinates: tuple[Coordinate, ...]
@@ -89,7 +89,7 @@ class Hypothesis:
     residual: Array = field(repr=False)
     likelihood: float = -np.inf
     t: float = 0.0
-    relief: float = 0.0  # log likelihood of the priors that base parameters regain beside it
+    relief: float = 0.0  # log likelihood of the priors that base parameters regain with it
     covariance: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     slopes: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
 
@@ -103,7 +103,7 @@ class Hypothesis:
 class BaseFit:
     """The current model on one set of runs: residual, derivative by free parameters per prior, offsets from priors.
 
-    The last `bends` of the parameters are no parameters of the model but bend laws of its effects (see `freedom`).
+    The last `bends` parameters are not the model's: they free the laws of its effects (see `freedom`).
     """
 
     model: Model
@@ -118,12 +118,12 @@ class BaseFit:
 
     @property
     def own(self) -> slice:
-        """Which of the parameters are the model's."""
+        """The parameters that are the model's."""
         return slice(0, len(self.names) - self.bends)
 
 
 def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:
-    """Coordinates of every effect of the model's library that it lacks, that can fade in, and that fits beside it."""
+    """Coordinates of every library effect that the model lacks, that can fade in, and that fits its other effects."""
     found = {}
     for name in model.library.names():
         if name not in FRAME and name not in BASE and name not in model.effects:
@@ -161,7 +161,7 @@ def vectors(model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
 def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Array, Array, Array]:
     """Step x (p,) that minimises |w (r + K x)|^2 + |sqrt(ridge) (x + offset)|^2; also w K and the inverse normal.
 
-    Raises NumericalError when the derivatives leave the finite numbers, or differ too much in size.
+    Raises NumericalError when the derivatives are not finite, or differ too much in magnitude.
     """
     A, normal = _normal(K, w, ridge)
     bread = finite(np.linalg.inv, normal)
@@ -182,9 +182,9 @@ def _normal(K: Array, w: Array, ridge: Array) -> tuple[Array, Array]:
 
 
 def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:
-    """Covariance of a least-squares estimate whose errors belong together in blocks (Liang and Zeger 1986).
+    """Covariance of a least-squares estimate whose errors are correlated within blocks (Liang and Zeger 1986).
 
-    What a prior holds (`ridge`, its information) is as uncertain as the prior says.
+    Directions that only a prior determines (`ridge`, its information) keep the prior's uncertainty.
     """
     scores = csr_array((e, block, np.arange(len(e) + 1)), (len(e), int(block.max()) + 1)).T @ A
     n = len(scores)
@@ -192,7 +192,7 @@ def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, r
 
 
 def wald(size: Array, covariance: Array) -> float:
-    """Student-like statistic of several sizes together: sqrt(chi2 - (n - 1)), |t| for one."""
+    """Student-like statistic of several sizes together: sqrt(chi2 - (n - 1)), |t| for a single size."""
     if not len(size):
         return 0.0
     jitter = 1e-9 * np.trace(covariance) / len(size) + 1e-300

@@ -1,4 +1,4 @@
-"""Candidates judged: is a size stable, do traces shifted in time do as well, what do held-out runs gain."""
+"""Candidates judged: stability of their sizes, comparison with traces shifted in time, gain on held-out runs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -23,11 +23,11 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-TEXTURE = 0.01  # of the driving force: a smaller force must explain most of what is there, or it is part of a texture
+TEXTURE = 0.01  # of the drive force: a smaller force must explain most of the misfit, or it counts as friction texture
 DECOYS = 12
-WELL_KNOWN = 0.5  # of a size: runs that know it less well do not count against it
+WELL_KNOWN = 0.5  # of a size: runs that determine it less well do not count against it
 FEW_RUNS = 3
-NONE_WITHIN = 2.0  # deviations from none: a size that is nearer may be none
+NONE_WITHIN = 2.0  # deviations from zero: a smaller size may be zero
 
 
 def judged(
@@ -69,9 +69,9 @@ def judged(
 
 
 def sizes(own: Sequence[Coordinate], at: Array) -> Array:
-    """Sizes (own,) of an effect in usual ones, 0 of what only shapes it; at (own,): where it is in its coordinates.
+    """Sizes (own,) of an effect in usual sizes, 0 for shape parameters; at (own,): its coordinates.
 
-    What is damped more than usual lags by its damping, too: by 2 zeta / omega, and a first order by nothing else.
+    Damping above the usual one adds to the lag 2 zeta / omega, so it multiplies the size of a fading frequency.
     """
     values = [(c, float(u)) for c, u in zip(own, at, strict=True)]
     damping = max((c.value(u) / c.typical for c, u in values if c.name.endswith(".damping_ratio")), default=1.0)
@@ -81,20 +81,20 @@ def sizes(own: Sequence[Coordinate], at: Array) -> Array:
 
 
 def magnitude(own: Sequence[Coordinate], at: Array) -> float:
-    """Largest size of an effect in usual ones; at (own,): where it is in its coordinates."""
+    """Largest size of an effect in usual sizes; at (own,): its coordinates."""
     return float(np.max(np.abs(sizes(own, at)), initial=0.0))
 
 
 def size_in(model: Model, name: str) -> float:
-    """Of an effect of the model, in usual ones."""
+    """Largest size of an effect of the model, in usual sizes."""
     own = coordinates(model.library.find(name))
     return magnitude(own, np.array([c.u(model[c.name]) for c in own]))
 
 
 def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
-    """Whether all sizes of an effect of the model may be none: none differs by more than two of its deviations `std`.
+    """Whether all sizes of an effect of the model may be zero: each is within two of its deviations `std` of neutral.
 
-    Where the data say nothing at all, of infinite deviation, they do not say that either.
+    A size of infinite deviation, on which there are no data, does not count as zero.
     """
     fading = [c for c in coordinates(model.library.find(name)) if c.is_size]
     return all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] < np.inf for c in fading)
@@ -103,8 +103,8 @@ def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
 def stable(base: BaseFit, h: Hypothesis) -> bool:
     """Whether the sizes keep their sign and half their value, whichever run is left out (linearised).
 
-    Runs that know a size to no better than half of it by themselves, as when one run alone goes to the end of the
-    stroke, do not count against it.
+    Remaining runs that determine a size to no better than half of it do not count against it, as when the run left out
+    is the only run that reaches the end of the stroke.
     """
     A, e, ridge = _parts(base, h)
     p, normal = len(base.names), A.T @ A
@@ -114,7 +114,7 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
     u = h.u[sizes]
     for own in _folds(base.evidence):
         inverse = np.linalg.inv(normal - A[own].T @ A[own] + np.diag(ridge))
-        # the other runs' optimum: their gradient is minus that of those left out
+        # the optimum of the other runs: their gradient is minus that of the runs left out
         shift, covariance = (inverse @ A[own].T @ e[own])[p:][sizes], inverse[p:, p:][np.ix_(sizes, sizes)]
         known = float(u @ covariance @ u) < (WELL_KNOWN * float(u @ u)) ** 2
         if known and float(u @ (u + shift)) < 0.5 * float(u @ u):
@@ -123,7 +123,7 @@ def stable(base: BaseFit, h: Hypothesis) -> bool:
 
 
 def _folds(evidence: Evidence) -> list[NDArray[np.bool_]]:
-    """Which residuals to leave out together: a run each; quarters in time of each, of less than three runs."""
+    """Residuals to leave out together: one run each; with fewer than three runs, a quarter in time of each."""
     if len(evidence.runs) >= FEW_RUNS:
         return [evidence.run == k for k in range(len(evidence.runs))]
     ends = np.array([run.time[-1] for run in evidence.runs])
@@ -166,9 +166,9 @@ def decoy(base: BaseFit, h: Hypothesis, rng: np.random.Generator) -> float:
 
 
 def remaining(candidate: Candidate, first: dict[str, float], now: dict[str, float]) -> float:
-    """Share of what was left at first that is still there, in the equation where the candidate helps most.
+    """Share of the original misfit that is still there, in the equation where the candidate helps most.
 
-    Of those in which its gain counts: a thousandth of a large rest elsewhere is more, and chance.
+    Only equations with a sufficient gain count: 0.1 % of a large misfit elsewhere may be larger, but is chance.
     """
     helped = [n for n, gain in candidate.gain.items() if gain >= GAIN_LEAST] or list(candidate.gain)
     name = max(helped, key=lambda n: candidate.gain[n] * now.get(n, 0.0))

@@ -1,4 +1,4 @@
-"""What is left in each equation, with and without a candidate, and how surely one leaves less than the other."""
+"""The misfit of each equation with and without a candidate, and how certain the difference is."""
 
 from collections.abc import Sequence
 
@@ -11,12 +11,12 @@ from pneumo_ros.diagnose.hypothesis import FLOOR, OVERLAP, family_scales, huber,
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-MOST_BLOCK = 3.0  # log likelihood that one block of time, or event, may say: it takes several to decide
+MOST_BLOCK = 3.0  # largest log likelihood of one block of time, or event: it takes several to decide
 ACTS = 0.25  # noise deviations: an effect acts where it changes a residual by more
-FEWEST_WINDOWS = 30  # of a family, without which it is not judged where an effect acts; windows overlap
-FEWEST_OF = {"breakaway": 8}  # the same where it is not that number: breakaways do not overlap
-WILD = 3.0  # usual sizes: beyond, a residual says no more against an effect
-NOISE = {"breakaway": 0.56}  # mean square that noise alone leaves, where it is not 1: their spread is generous
+FEWEST_WINDOWS = 30  # windows where an effect acts: a family with fewer is not judged there; windows overlap
+FEWEST_OF = {"breakaway": 8}  # the same for families without overlap
+WILD = 3.0  # usual sizes: larger residuals are limited to this
+NOISE = {"breakaway": 0.56}  # mean square of noise alone, where it is not 1: the stated spread is larger
 
 
 def equation_of(name: str) -> str:
@@ -25,12 +25,12 @@ def equation_of(name: str) -> str:
 
 
 def equation_helped(gain: dict[str, float]) -> str:
-    """The equation that gains most; "" of none."""
+    """The equation that gains most; "" if there is none."""
     return max(gain, key=lambda name: gain[name], default="")
 
 
 def force(evidence: Evidence, before: Array, after: Array) -> float:
-    """Root mean square of what changes in the momentum equation [N]; 0 without it."""
+    """Root mean square of the change of the momentum equation [N]; 0 without that equation."""
     own = np.isin(evidence.family, [k for k, name in enumerate(evidence.names) if equation_of(name) == "momentum"])
     change = (before - after)[own] * evidence.noise[own]
     return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
@@ -39,7 +39,8 @@ def force(evidence: Evidence, before: Array, after: Array) -> float:
 def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) -> dict[str, float]:
     """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's.
 
-    Of all windows, or of those in `rows` (residuals,), whose families have thirty of them, or eight breakaways.
+    Over all windows, or over those in `rows` (residuals,): families with fewer than thirty windows, or eight
+    breakaways, are left out.
     """
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
@@ -51,22 +52,22 @@ def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) 
 
 
 def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> dict[str, float]:
-    """By equation, the share of the mean square residual that `after` lacks against `before`."""
+    """By equation, the reduction of the mean square residual from `before` to `after`, as a share of `before`."""
     first, second = mean_squares(evidence, before, rows), mean_squares(evidence, after, rows)
     return {name: 1.0 - second[name] / first[name] for name in first}
 
 
 def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
-    """The same of what is usual: one wild breakaway of twenty says nothing against what the others bear out."""
+    """The same with outliers limited: one bad breakaway of twenty must not outweigh the others."""
     each = [usual(np.abs(before[evidence.family == k])) for k in range(len(evidence.names))]
     limit = WILD * np.array(each)[evidence.family]
     return gains(evidence, np.clip(before, -limit, limit), np.clip(after, -limit, limit))
 
 
 def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
-    """Largest share, over the equations, of the mean square beyond the noise's that `after` lacks.
+    """Largest reduction, over the equations, from `before` to `after`, as a share of the mean square beyond noise.
 
-    In `rows` (residuals,); where hardly a breakaway is in them, as when each changes a little, of all breakaways.
+    In `rows` (residuals,); over all breakaways if `rows` holds too few of them, as when each changes a little.
     """
     whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEWEST_OF} for r in (before, after)]
     first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
@@ -76,7 +77,7 @@ def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None
 
 
 def acting(before: Array, after: Array) -> Rows:
-    """Where an effect acts (residuals,): a leak of the closed valve must not drown in what happens while it is open."""
+    """Where an effect acts (residuals,): the leak of a closed valve must not drown in the residuals of the open one."""
     return np.asarray(np.abs(before - after) > ACTS)
 
 
@@ -86,29 +87,29 @@ def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
 
 
 def _surprise(evidence: Evidence, residual: Array) -> Array:
-    """Minus the log likelihood of each window, by the scales that the residual itself has.
+    """Minus the log likelihood of each window, with the scales of the residual itself.
 
-    By those of another model a larger moving mass, which noise of the position moves too, would look bad at rest.
+    With another model's scales a larger moving mass would look bad at rest, as it amplifies position noise.
     """
     scale = family_scales(evidence, residual)[evidence.family]
     return np.asarray(np.log(scale) + huber(residual / scale))
 
 
 def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
-    """Log likelihood that `better` gains on `worse`, and that saving over its scatter between blocks (Vuong 1989)."""
+    """Log likelihood that `better` gains on `worse`, and that gain over its scatter between blocks (Vuong 1989)."""
     difference = OVERLAP**2 * (_surprise(evidence, worse) - _surprise(evidence, better))
     return together(np.asarray(np.bincount(evidence.block, difference), dtype=np.float64))
 
 
 def together(saved: Array) -> tuple[float, float]:
-    """Log likelihoods that parts of the data save, none of which decides: their sum, and that over its scatter."""
+    """Sum of the log likelihoods that parts of the data gain, each limited, and that sum over its scatter."""
     parts = np.clip(saved, -MOST_BLOCK, MOST_BLOCK)
     spread = float(np.sqrt(np.sum(parts**2)))
     return float(parts.sum()), float(parts.sum() / spread) if spread > 0.0 else 0.0
 
 
 def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:
-    """The same over several bodies of evidence, (evidence, worse, better) each: deviations."""
+    """The gain over its scatter for several bodies of evidence together, each (evidence, worse, better)."""
     total = spread = 0.0
     for evidence, worse, better in pairs:
         saved, z = advantage(evidence, worse, better)

@@ -1,8 +1,7 @@
 """The mechanics alone: piston, friction and load driven by the measured pressures.
 
-With the chambers' equations out of the way a short simulation from rest through a breakaway or a reversal depends on
-friction and load only, and shows what no equation along the motion can: what happens in the millimetre between
-sticking and sliding.
+Without the chambers' equations a short simulation from rest through a breakaway or a reversal depends on friction and
+load only. It shows the millimetre between sticking and sliding, which no equation along the motion shows.
 """
 
 from collections.abc import Sequence
@@ -21,8 +20,8 @@ from pneumo_ros.shooting.segments import Segments, cut
 Array = NDArray[np.float64]
 
 LENGTH = 0.3  # s
-MOST_EVENTS = 40  # segments: more take longer, and move friction by less than its deviation
-_SLOW, _MOVED = 0.004, 3e-4  # m/s and m: an event is slower than the one and goes farther than the other
+MOST_EVENTS = 40  # segments: more take longer, and change friction by less than its deviation
+_SLOW, _MOVED = 0.004, 3e-4  # m/s and m: the slowest speed of an event is smaller, its travel is larger
 _LAG = 0.025  # s
 
 
@@ -47,7 +46,7 @@ def mechanical(model: Model) -> Model | None:
 
 
 def moves(model: Model, name: str) -> bool:
-    """Whether an effect acts on the piston or on what its position sensor shows."""
+    """Whether an effect acts on the piston or on its position sensor."""
     mechanics = {
         "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_rise", "slip", "stribeck",
         "y_measured", "resistance",
@@ -57,7 +56,7 @@ def moves(model: Model, name: str) -> bool:
 
 
 def driven_by_pressures(model: Model, run: Run) -> Run:
-    """The run as one of an axis that its measured pressures drive, corrected for the model's pressure sensors."""
+    """The run as that of an axis driven by its measured pressures, corrected for the model's pressure sensors."""
     if model.force_driven:
         return run
     pressures = corrected(model, measured_frame(run, force_driven=False), run)[:, 2:4]

@@ -1,4 +1,4 @@
-"""What a diagnosis says: verdict, added effects with intervals, ranking, held-out errors, what remains unexplained."""
+"""The result of a diagnosis: verdict, added effects with intervals, ranking, held-out errors, unexplained misfit."""
 
 from dataclasses import dataclass, field
 
@@ -45,13 +45,13 @@ class Ranked:
     holdout_gain: float  # share of the mean square of the equation it helps most, on held-out runs
     equation: str  # that equation
     size: float  # in usual sizes of the effect
-    objections: tuple[str, ...]  # why it was not added; empty for what was, and for its rivals
+    objections: tuple[str, ...]  # why it was not added; empty for added effects and their rivals
     holdout_error: float | None  # held-out window error with it; None where it was not predicted
 
 
 @dataclass(frozen=True)
 class Unexplained:
-    """What remains in one equation, over bins of the variable that explains it best: (bins,) arrays."""
+    """The misfit of one equation over bins of the variable that explains it best: (bins,) arrays."""
 
     equation: str
     against: str
@@ -64,8 +64,8 @@ class Unexplained:
     unit: str
     rms: float
     share: float  # of the residual's square that the variable explains, predicted for data left out
-    material: bool  # whether it is of a size that matters, rather than texture or the rest of an added effect's shape
-    moved: Moved | None = None  # where most of it is the model's own parameters being others on held-out recordings
+    material: bool  # whether it is large enough to matter, beyond texture and the inexact law of an added effect
+    moved: Moved | None = None  # where most of it comes from machine parameters that changed on held-out recordings
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Outcome:
     verdict: str
     failing: tuple[str, ...]  # of the refitted base: momentum, chamber_a, chamber_b, valve, sensor
     base: Model  # refitted
-    model: Model  # with what was added
+    model: Model  # with the added effects
     added: tuple[Addition, ...]
     ranking: tuple[Ranked, ...]
     steps: tuple[Step, ...] = field(repr=False)
@@ -84,9 +84,9 @@ class Outcome:
     errors: dict[str, dict[str, float]]  # before, after, noise -> by signal, rms in its unit over all held-out windows
     waterfall: tuple[tuple[str, float], ...]  # name and error, in noise floors: as given, refitted, each addition
     unexplained: Unexplained | None
-    because: str = ""  # what fails in predictions of held-out runs, where the verdict is `unknown_effect` for that
+    because: str = ""  # failing predictions of held-out runs, if they make the verdict `unknown_effect`
     interrupted: bool = False
     train: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()  # a sentence for every loop of the search that ended at its bound
-    late: float = 0.0  # s, by which a measured force was put off, as positions come after it
+    late: float = 0.0  # s, by which a measured force was delayed, as positions are recorded after it

@@ -1,7 +1,7 @@
 """A model fitted to predict: by multiple shooting over segments that begin before breakaways, and some others.
 
-Along the signals a static friction off by 3 % costs next to nothing; in predictions over a second it costs a hundred
-noise deviations, by a breakaway that comes too late.
+A static friction 3 % off costs next to nothing along the signals; in predictions over a second it makes a breakaway
+late, which costs a hundred noise deviations.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,8 +36,8 @@ def polish(
 ) -> Refit:
     """Multiple shooting from `model`, over at most `most` segments of all runs.
 
-    What is free and what was known of it are those of `fitter`; estimates are changes against its start. `sure`:
-    standard deviations of parameters of `model` that hold them beside that, as far as they are smaller.
+    Free parameters and their priors are those of `fitter`; estimates are changes against its start. `sure`: standard
+    deviations of parameters of `model`, which narrow their priors where they are smaller.
     """
     known, held = fitter.known(model), sure or {}
     samples = max(round(SEGMENT / runs[0].sample_time), 2)
@@ -51,7 +51,7 @@ def polish(
 
 
 def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[Index]:
-    """Where segments of `samples` begin in each run: before breakaways, at most half of `most`; the others anywhere."""
+    """Starts of segments of `samples` in each run: before breakaways, at most half of `most`; the others anywhere."""
     slips = [_before_slips(model, run, samples) for run in runs]
     some = _thinned(slips, most // 2)
     rest = _thinned([side_by_side(run, samples) for run in runs], most - sum(map(len, some)))
@@ -59,7 +59,7 @@ def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[
 
 
 def _before_slips(model: Model, run: Run, samples: int) -> Index:
-    """Grid points shortly before each breakaway from which on a segment is measured throughout."""
+    """Grid points shortly before each breakaway whose following segment is measured throughout."""
     slips = find_breakaways(model, run) if "z" in model.states else []
     early = round(LEAD / run.sample_time)
     starts = [slip.index - early for slip in slips if 0 <= slip.index - early < len(run) - samples]

@@ -1,7 +1,7 @@
 """How well a model predicts recordings over a second, in one number for each signal.
 
-The geometric mean over windows: a single breakaway caught a moment too early, which the last tenth of a per cent of
-static friction decides, costs thousands of noise deviations in its window and says nothing about the model.
+It is the geometric mean over windows. A single breakaway predicted slightly too early, by 0.1 % of static friction,
+costs thousands of noise deviations in its window, which is no measure of the model.
 """
 
 from collections.abc import Mapping, Sequence
@@ -46,5 +46,5 @@ def no_worse(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
 
 
 def typical_error(errors: Mapping[str, float]) -> float:
-    """Root mean square over signals of what `windowed` returns: 1 where only noise is left."""
+    """Root mean square over signals of the errors by `windowed`: 1 where only noise is left."""
     return float(np.sqrt(np.mean(np.square(list(errors.values())))))

@@ -1,4 +1,4 @@
-"""Candidates fitted to the evidence by Gauss-Newton, many at once, base parameters at their best beside each."""
+"""Candidates fitted to the evidence by Gauss-Newton, many at once, each with its own best base parameters."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,7 +20,7 @@ from pneumo_ros.diagnose.significance import covariances, significance
 
 Array = NDArray[np.float64]
 
-FEW_SIZES = 3  # sizes: of effects with more, only the linear fit is tried
+FEW_SIZES = 3  # sizes: an effect with more starts from the linear fit only
 
 
 def refine(
@@ -28,7 +28,7 @@ def refine(
 ) -> list[Hypothesis]:
     """Gauss-Newton of all coordinates of some candidates at once, each with its own step control.
 
-    Unless they are `settled`, each begins at the best of a few sizes, and is fitted as exactly as ranking asks for.
+    Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
     best = [replace(h, likelihood=-np.inf) for h in hypotheses]
     begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
@@ -69,7 +69,7 @@ def _slopes(h: Hypothesis, u: Array, residual: Array) -> Array:
 
 
 def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
-    """For each hypothesis the best of a few sizes: what is linear near neutral need not be so where it leads."""
+    """For each hypothesis the best of a few sizes: an effect that is linear near neutral may not be so farther away."""
     options: list[list[Array]] = []
     for h in hypotheses:
         size = np.array([c.is_size for c in h.coordinates])
@@ -98,7 +98,7 @@ def _values(h: Hypothesis, u: Array) -> dict[str, float]:
 
 
 def _probes(h: Hypothesis, u: Array) -> list[Array]:
-    """u with each coordinate in turn moved by a little, away from a bound."""
+    """u with each coordinate in turn moved by a small step, away from a bound."""
     found = []
     for j, c in enumerate(h.coordinates):
         v = u.copy()
@@ -127,8 +127,8 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     of_all = of_sizes = covariances(base, A, w * after, ridge)
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
     if len(sizes) < len(u):
-        # Without the effect there is no shape to be uncertain of. Free beside a small size, a shape that trades with
-        # it, as a share of flow with its conductance, would hide the largest gain.
+        # Without the effect there is no shape to be uncertain of. A free shape that is correlated with a small size,
+        # as a share of flow with its conductance, would hide the largest gain.
         kept = [*range(p), *(p + j for j in sizes)]
         of_sizes = covariances(base, A[:, kept], w * after, ridge[kept])
     t = significance([h.coordinates[j] for j in sizes], u[sizes], *of_sizes)
@@ -161,7 +161,7 @@ def bounded_step(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, o
 
 
 def held_out(base: BaseFit, held: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
-    """Residuals of hypotheses on runs that took no part in their fit: parameters as they were found."""
+    """Residuals of hypotheses on held-out runs, with the fitted parameters."""
     if not hypotheses:
         return []
     model, evidence = base.everything, held.evidence

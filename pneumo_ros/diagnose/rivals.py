@@ -11,13 +11,13 @@ from pneumo_ros.diagnose.measures import pooled_advantage
 
 Array = NDArray[np.float64]
 
-ALIKE = 0.9  # of the best one's score: less explains less, however few the blocks that say so
+ALIKE = 0.9  # of the best score: a candidate with less explains less, and is no rival
 TIED = 2.5  # deviations by which a rival must be worse to be distinguished
-SAME = 0.5  # likeness of what rivals change; less is another thing, not another name for it
+SAME = 0.5  # least cosine between the changes that two rivals make; below, they are different effects
 
 
 def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates whose residuals all runs together do not distinguish from those of the best one."""
+    """Candidates that all runs together do not distinguish from the best one."""
     found = []
     for other in others:
         if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
@@ -32,15 +32,15 @@ def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candi
 
 
 def _likeness(one: Array, other: Array) -> float:
-    """Cosine of the angle between what two effects change."""
+    """Cosine of the angle between the changes of two effects."""
     size = float(np.linalg.norm(one) * np.linalg.norm(other))
     return float(one @ other) / size if size else 0.0
 
 
 def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candidate | None:
-    """The first of `good`, or what it contains when the runs do not ask for more; None of none.
+    """The first of `good`, or a simpler effect that it contains if the runs do not need more; None if there is none.
 
-    They ask for more when they distinguish the two, and the difference between them is significant.
+    The runs need more when they distinguish the two effects, and the difference is significant.
     """
     for other in good[1:]:
         little = _between(held, good[0], other) < MATERIAL
@@ -50,7 +50,7 @@ def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candida
 
 
 def _between(held: BaseFit, best: Candidate, other: Candidate) -> float:
-    """Size of what two effects change differently, over that of what the best one changes."""
+    """Norm of the difference between the changes of two effects, over that of the best one's change."""
     whole = float(np.linalg.norm(held.residual - best.held))
     return float(np.linalg.norm(other.held - best.held)) / whole if whole else 0.0
 

@@ -1,4 +1,4 @@
-"""Every candidate fitted linearly to part of the evidence, and those chosen that are fitted in earnest."""
+"""Every candidate fitted linearly to part of the evidence, and the choice of candidates for the nonlinear fit."""
 
 from collections.abc import Sequence
 
@@ -25,16 +25,16 @@ Array = NDArray[np.float64]
 
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = (
-    4.5  # log likelihood that base parameters cost by their priors: with more, effects that they replace are looked for
+    4.5  # log likelihood that base parameters lose by their priors: above it, the effects they replace are searched for
 )
-IDLE = 1e-3  # noise deviations: a size that moves no residual by more does nothing
-SMALL_STEP = 0.005  # usual sizes: a step like those by which base parameters' slopes are found
+IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
+SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 
 
 def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
 
-    Where base parameters are strained, also by the slope at neutral: they replace an effect by its slope.
+    Where base parameters are strained, also by the slope at neutral, by which they replace an effect.
     """
     found = missing(base.model)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
@@ -68,7 +68,7 @@ def _linear(
 ) -> Hypothesis:
     """Linear fit of the sizes of one candidate beside the base parameters.
 
-    Sizes that change nothing here, as of a profile where no recording goes, stay neutral.
+    Sizes without influence here, as points of a profile without data, stay neutral.
     """
     idle = [k for k, change in zip(sizes, C.T, strict=True) if np.max(np.abs(change)) < IDLE]
     if 0 < len(idle) < len(sizes):
@@ -98,7 +98,7 @@ def _linear(
 def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
     """The first of each name, `most` of those that help the gas and as many of those that help the mechanics.
 
-    What is missing in one must not crowd out what is missing in the other.
+    Effects missing in one part must not crowd out effects missing in the other.
     """
     gas = np.array([name.startswith("chamber") for name in base.evidence.names])
     before, found = family_likelihoods(base.evidence, nothing.residual), dict[str, tuple[bool, Hypothesis]]()

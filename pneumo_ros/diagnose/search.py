@@ -32,15 +32,15 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
-SHOWN_ANYWAY = 4  # of the first ranking: tried where none promises anything, so that the reasons against it can be read
+SHOWN_ANYWAY = 4  # candidates tried where none is promising, so that the objections can be shown
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
-VANISHED = "nothing of it is left beside the effects added later"
+VANISHED = "its size vanishes beside the effects added later"
 UNHELPFUL = "predictions of held-out runs over 1 s do not improve with it"
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """The candidates beside one model: what they start from, those judged, best first, and the first ranking of all."""
+    """The candidates for one model: their starting point, those judged, best first, and the first ranking of all."""
 
     base: BaseFit
     held: BaseFit
@@ -50,7 +50,7 @@ class Ranking:
 
 
 class Search:
-    """Everything that stays the same during one search."""
+    """The data and settings that do not change during one search."""
 
     def __init__(
         self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
@@ -60,24 +60,24 @@ class Search:
         train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
-        # what is asked of a model again is kept
+        # results are kept, as they are needed again
         self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
         self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
         self.ranking = lru_cache(1)(self._rank)
-        self.first: dict[str, float] = {}  # what the refitted model leaves beyond noise, by equation
+        self.first: dict[str, float] = {}  # misfit of the refitted model beyond noise, by equation
 
     def run(self) -> Found:
         """Add effects one after another while they pass every test."""
-        self.progress(0.05, "refitting what the model has")
+        self.progress(0.05, "refitting the model as given")
         base = self.polish(self.fitter.refit(self.start))
         model, steps = base, list[Step]()
         before, vanished = self.predicted(base), dict[str, str]()
-        refused = vanished  # beside this model: another one may make room for it
-        least = before  # of all models so far: what mends an added law of another shape is no effect
+        refused = vanished  # with this model: another model may need them
+        least = before  # of all models so far: a correction of an added law is no effect
         try:
             for _ in range(ROUNDS):
                 k = len(model.effects) - len(base.effects)
-                self.progress(0.1 + 0.15 * k, f"ranking what {'else ' if k else ''}may be missing")
+                self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
                 step = self.round(model, refused)
                 if step.added is None or k == MOST_EFFECTS:
                     steps.append(replace(step, added=None))
@@ -96,7 +96,7 @@ class Search:
             else:
                 self.fitter.limits.append(f"the search ended after {ROUNDS} rounds with candidates left to try")
                 steps.append(replace(self.round(model, refused), added=None))
-            self.progress(0.85, "looking at breakaways and reversals")
+            self.progress(0.85, "judging breakaways and reversals")
             new, last = self.slip_round(model)
             if last is not None and last.added is not None and pays(least, self.predicted(new)):
                 steps[-1:] = [last, replace(steps[-1], model=new)]
@@ -107,9 +107,9 @@ class Search:
             return Found(base, model, tuple(steps), interrupted=True)
 
     def kept(self, base: Model, model: Model, steps: Sequence[Step]) -> Found:
-        """What was found, without the first addition with which predictions get worse and those after it.
+        """The result, without the first addition with which predictions get worse and all later ones.
 
-        A model on the way is settled as base and final model are where it would look worse for that alone.
+        An intermediate model is settled like the base and the final model before it is judged worse than them.
         """
         steps, before = list(steps), self.predicted(base)
         for k in (k for k, step in enumerate(steps) if step.added is not None):
@@ -124,7 +124,7 @@ class Search:
         return Found(base, model, tuple(steps))
 
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
-        """The model with an effect and all refitted, less those of which nothing is left then, and their names."""
+        """The refitted model with an effect added, without the effects whose size vanishes, and their names."""
         new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
         new = self.polish(self.fitter.simplest(new, candidate.name))
         std = self.fitter.deviations(new)
@@ -134,9 +134,9 @@ class Search:
         return new, gone
 
     def polish(self, model: Model) -> Model:
-        """Friction refitted to breakaways and reversals, which decide about predictions through them.
+        """The model with friction refitted to breakaways and reversals, on which predictions depend.
 
-        Of an axis driven by a force only where predictions get no worse: no pressures hold it back as it slides.
+        On a force-driven axis only where predictions get no worse, as no pressures limit its motion.
         """
         made = self.slips(model)
         if made is None:
@@ -146,15 +146,15 @@ class Search:
         return new if not model.force_driven or self._predicts_training(new, model) else model
 
     def settled(self, model: Model) -> Model:
-        """Refitted to predict segments, where nothing else settles the balance of forces to which predictions hang.
+        """The model refitted by prediction of segments, where nothing else determines the balance of forces.
 
-        That is on recordings with too few breakaways, and on axes driven by a force, which no pressures hold back; and
-        only where held-out runs are predicted no worse, either.
+        That is on recordings with too few breakaways, and on force-driven axes, whose motion no pressures limit; and
+        only where predictions of training and held-out runs get no worse.
         """
         if not model.force_driven and self.slips(model) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
-        sure = self.fitter.deviations(model)  # what equations along the motion say: segments alone bend it
+        sure = self.fitter.deviations(model)  # by the equations along the motion: segments alone bias the parameters
         new = polish(self.fitter, model, self.train.runs, sure=sure).model
         better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
         return new if better else model
@@ -164,7 +164,7 @@ class Search:
         return no_worse(windowed(old, self.train.runs), windowed(new, self.train.runs))
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
-        """Friction refitted to breakaways and reversals, and an effect added that they alone show, if they miss one.
+        """The model with the effect that only breakaways and reversals show, if they need one, and the round.
 
         Not where a significant force is unexplained while the piston slides: it acts at breakaways, too.
         """
@@ -176,7 +176,7 @@ class Search:
         return longer(model, made, ranking.screened, self.fitter.deviations(model), against, first, self.fitter.limits)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
-        """The candidates tried beside a model and the best of them, but for those `refused`, and why."""
+        """The candidates tried with a model, and the best that is not `refused` (name: reason)."""
         ranking = self.ranking(model)
         base, held = ranking.base, ranking.held
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
@@ -224,10 +224,10 @@ class Search:
 
 
 def convinces(candidate: Candidate, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether held-out predictions allow an effect: they never may get worse by it, and have to get better.
+    """Whether held-out predictions allow an effect: they must not get worse with it, and have to get better.
 
-    They need not get better where it explains its equation: while something else is missing, predictions over a second
-    may depend on that alone. Nor need they where the data do not decide, if no signal is predicted worse.
+    They need not get better where the effect explains its equation: predictions over a second may depend only on
+    another missing effect. Nor need they where the data do not decide, if no signal is predicted worse.
     """
     if rises(before, after):
         return False

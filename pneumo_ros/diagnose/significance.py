@@ -1,4 +1,4 @@
-"""How surely a candidate's sizes differ from none."""
+"""Significance of a candidate's sizes: t of their distance from neutral."""
 
 from collections.abc import Sequence
 
@@ -10,11 +10,11 @@ from pneumo_ros.diagnose.hypothesis import BaseFit, cluster_robust, wald
 
 Array = NDArray[np.float64]
 
-DEGENERATE = 1e6  # no recording is that sure: what moves no residual has no scatter either, and the priors say how sure
+DEGENERATE = 1e6  # no recording gives so large a t: sizes that move no residual have no scatter, only their prior
 
 
 def covariances(base: BaseFit, A: Array, e: Array, ridge: Array) -> tuple[Array, Array]:
-    """Of the candidate's columns of A, which come after the base parameters': cluster-robust, and by the noise alone.
+    """Covariances of the candidate's columns of A, after the base parameters': cluster-robust, and by noise alone.
 
     A (residuals, base + own): weighted slopes; e: weighted residual; ridge: information of the priors.
     """
@@ -31,7 +31,7 @@ def significance(own: Sequence[Coordinate], u: Array, robust: Array, plain: Arra
 
 
 def distance(c: Coordinate, u: float) -> float:
-    """How far from neutral, in u: of a fading one relative to its value, in what residuals are linear in."""
+    """Distance from neutral in u; for a fading size relative to its value, in the variable residuals are linear in."""
     if c.logarithmic:
         assert c.neutral is not None
         left = c.value(u) / c.neutral

@@ -1,4 +1,4 @@
-"""Effects tried on breakaways and reversals: begun at several sizes and shapes, fitted, judged by events held out."""
+"""Effects tried on breakaways and reversals: started at several sizes and shapes, fitted, judged by held-out events."""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -22,33 +22,33 @@ from pneumo_ros.shooting.refit import refit_segments
 
 Array = NDArray[np.float64]
 
-BLIND = 30.0  # t that the usual size of an effect would reach on the equations: below, they do not decide about it
+BLIND = 30.0  # t of the usual size of an effect on the equations: below it, they do not decide about the effect
 SHARE_REMOVED = (
-    0.7  # of the error beyond the noise's that an effect must remove: slips alone decide, so they must be explained
+    0.7  # of the error beyond noise, which an effect must remove: slips alone decide, so they must be explained
 )
-MOST_FITTED = 3  # candidates that are fitted, of all that begin well
+MOST_FITTED = 3  # candidates that are fitted, those with the best starts
 EXPLAINED = 0.9  # share of the error beyond the noise's
 PART_EXPLAINED = (
-    0.3  # share of the error beyond the noise's: a candidate that removes as much is restarted from other sizes
+    0.3  # share of the error beyond noise: a candidate that removes as much is restarted from other sizes
 )
-RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size, and share of the error that must be left for another go
+RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size; most of the old error that may be left for another restart
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
-# log likelihood: starts of a state that an effect has for itself are free in every event, and so follow any slow force
+# log likelihood: an effect's own state starts free in every event, so that it can follow any slow force
 CONTRADICTED = 10.0
-Against = Callable[[str, Mapping[str, float]], float]  # of an effect's name and values: what the equations lose by it
-QUANTILES = (0.5, 0.75)  # of the events' errors: the first that is poor is looked at
+Against = Callable[[str, Mapping[str, float]], float]  # log likelihood lost by the equations, by effect and values
+QUANTILES = (0.5, 0.75)  # of the events' errors: the first poor one is used
 
 
 @dataclass(frozen=True)
 class Slipping:
-    """A candidate on the events: the mechanics with it, and errors per event without and with it, both ways."""
+    """A candidate on the events: the mechanics with it, and its errors per training and held-out event."""
 
     name: str
     model: Model
     train: Array
     held: Array
     std: dict[str, float]  # of its parameters
-    against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events ask for it
+    against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events need it
 
 
 def longer(
@@ -60,11 +60,11 @@ def longer(
     first: bool,
     limits: list[str],
 ) -> tuple[Model, Step | None]:
-    """The model with the effect that its breakaways and reversals need, and the candidates; None where they are fine.
+    """The model with the effect that its breakaways and reversals need, and the candidates; None if none is needed.
 
-    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: what the equations
-    along the motion say of an effect beside it; `first`: nothing was added; `limits` takes a sentence for every loop
-    that ended at its bound.
+    `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: log likelihood that
+    the equations along the motion lose by an effect; `first`: nothing was added; `limits` takes a sentence for every
+    loop that ended at its bound.
     """
     alone, found = made
     segments = found.train(alone)
@@ -89,9 +89,9 @@ def longer(
 
 @dataclass(frozen=True)
 class SlipFits:
-    """Effects to try beside `alone` on its events, by the `q`-quantile of errors; `held`: of the held-out ones now.
+    """Fits of effects added to `alone`, judged by the `q`-quantile of errors; `held`: its errors on held-out events.
 
-    `known`: standard deviations of the friction; `against`: what the equations along the motion say of an effect.
+    `known`: standard deviations of the friction; `against`: log likelihood that the equations lose by an effect.
     """
 
     alone: Model
@@ -103,9 +103,9 @@ class SlipFits:
     limits: list[str] = field(default_factory=list)  # a sentence for every loop that ended at its bound
 
     def tried(self, names: Sequence[str]) -> list[Slipping]:
-        """Those of the named effects that look best, fitted to the training events; smallest errors first.
+        """The named effects with the best starts, fitted to the training events; smallest errors first.
 
-        Where an effect leaves hardly more than noise, the rest is spared.
+        The search stops at an effect that leaves hardly more than noise.
         """
         most_are_poor = self.q == QUANTILES[0]
         tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
@@ -134,10 +134,10 @@ class SlipFits:
         return Slipping(name, fitted, train, held, std, loss)
 
     def _resized(self, c: Slipping) -> Slipping:
-        """A candidate that explains part, restarted from other sizes as long as it explains more.
+        """A candidate that explains part of the error, restarted from other sizes as long as it explains more.
 
-        Friction that was refitted makes up for a size too small, and a descent along both stops early; a size too large
-        the equations along the motion contradict.
+        Refitted friction compensates too small a size, and a descent along both stops early; the equations along the
+        motion contradict too large a size.
         """
         if self._share(c.held) < PART_EXPLAINED:
             return c
@@ -145,7 +145,7 @@ class SlipFits:
         return next((other for other in ways if other is not c), c)
 
     def _followed(self, c: Slipping, factor: float) -> Slipping:
-        """The last of the fits that begin at so many times the size of the one before and are better."""
+        """The last improvement among fits that each start at `factor` times the previous size."""
         effect = coordinates(self.alone.library.find(c.name))
         for _ in range(RESIZINGS):
             if self._explains(c):
@@ -160,7 +160,7 @@ class SlipFits:
         return c
 
     def _better(self, new: Slipping, old: Slipping) -> bool:
-        """Whether it is worth another go: it explains more, or enough of what the other was refused for."""
+        """Whether another restart is worthwhile: `new` explains more, or the equations no longer contradict it."""
         if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
             return self._left(new) <= WORTH_RESTART * self._left(old)
         return new.against < CONTRADICTED and self._share(new.held) >= SHARE_REMOVED
@@ -176,14 +176,14 @@ class SlipFits:
 
 
 def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[str, float]:
-    """Sizes of an effect in `model`, so many times larger."""
+    """Sizes of an effect in `model`, `factor` times larger."""
     return {c.name: c.grown(model[c.name], factor) for c in effect if c.is_size}
 
 
 def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
-    """Effects of the mechanics about which the equations along the motion say little, or which have a state of theirs.
+    """Effects of the mechanics that the equations along the motion determine poorly, or that have states of their own.
 
-    Windows of the equations average over what rings or lags faster than they are long.
+    Windows of the equations average over oscillations and lags shorter than a window.
     """
     builds, library = missing(alone), alone.library
     seen: dict[str, float] = {}
@@ -195,18 +195,18 @@ def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
 
 
 def share_removed(before: Array, after: Array, q: float) -> float:
-    """Share of the `q`-quantile of errors beyond the noise's that is gone."""
+    """Reduction of the `q`-quantile of errors, as a share of its excess over noise."""
     first, second = float(np.quantile(before, q)), float(np.quantile(after, q))
     return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
 
 
 def deviations_better(before: Array, after: Array, samples: int) -> float:
-    """By how many deviations events of that many samples got better; what an effect does not touch says nothing."""
+    """Improvement of events of `samples` samples over its scatter; unchanged events do not count."""
     return together(0.5 * samples * (before - after))[1]
 
 
 def determined(k: Coordinate, value: float, std: dict[str, float]) -> bool:
-    """Whether it is a size that differs from none by more than twice its standard deviation."""
+    """Whether it is a size that differs from neutral by more than twice its standard deviation."""
     return k.is_size and abs(value - (k.neutral or 0.0)) > 2.0 * std.get(k.name, np.inf)
 
 
@@ -221,7 +221,7 @@ def as_candidate(
 ) -> Candidate:
     """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
 
-    `samples` of an event. All events together decide whether there is an effect, those held out whether it predicts.
+    `samples`: of an event. All events decide whether there is an effect, the held-out events whether it predicts.
     """
     u = np.array([k.u(c.model[k.name]) for k in effect])
     every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
@@ -231,7 +231,7 @@ def as_candidate(
     enough = (
         ""
         if share >= SHARE_REMOVED
-        else f"removes only {100.0 * share:.0f} % of what noise does not explain at breakaways and reversals"
+        else f"removes only {100.0 * share:.0f} % of the misfit beyond noise at breakaways and reversals"
     )
     if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
         enough = f"the equations along the motion contradict it (they lose {c.against:.3g} in log likelihood)"

@@ -1,4 +1,4 @@
-"""Where the fit of an effect to breakaways and reversals begins, and how well it promises to do."""
+"""The starting point for the fit of an effect to breakaways and reversals, and its predicted gain."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ from pneumo_ros.shooting.refit import unknowns_of
 from pneumo_ros.shooting.start import fit_starts
 
 Array = NDArray[np.float64]
-Begin = tuple[float, Model]  # the smaller the better, and the model to begin with
+Begin = tuple[float, Model]  # a score, the smaller the better, and the model to start with
 
-ONE_IN = 3  # of the events one is enough to begin by
-LOOKED_AT = 0.95  # of the events are looked at along a tangent: where the moment of a slip is missed it leads nowhere
+ONE_IN = 3  # one event in three is enough to choose a start
+LOOKED_AT = 0.95  # share of the events used along a tangent: at slips predicted at the wrong time it is useless
 _SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
-_NEAR = 0.2  # of the usual size: as far as a tangent is trusted
+_NEAR = 0.2  # of the usual size: range in which a tangent is trusted
 
 
 def by_sizes(alone: Model, found: Slips, name: str) -> Begin:
@@ -40,9 +40,9 @@ def by_sizes(alone: Model, found: Slips, name: str) -> Begin:
 
 @dataclass(frozen=True)
 class Tangents:
-    """From mechanics without an effect, where the training events begin by them, and with what is known of friction.
+    """Linearisations at mechanics without an effect, their fitted starts of the training events, and friction priors.
 
-    For models that predict most events: sizes large enough to try would miss the moments of all.
+    For models that predict most events: with trial sizes all slips would come at the wrong time.
     """
 
     alone: Model
@@ -52,11 +52,11 @@ class Tangents:
 
     @classmethod
     def of(cls, alone: Model, found: Slips, known: dict[str, float]) -> "Tangents":
-        """Where the events begin is fitted here; `known`: standard deviations of the friction from elsewhere."""
+        """The starts of the events are fitted here; `known`: standard deviations of the friction from elsewhere."""
         return cls(alone, found, fit_starts(alone, found.train(alone)), friction_priors(alone, known))
 
     def best(self, name: str) -> Begin:
-        """The effect along the tangent that promises most, and minus the loss that a step along it would save."""
+        """The effect along its best tangent, and minus the loss that a step along it would save."""
         effect = coordinates(self.alone.library.find(name))
         options = [
             self._along(name, own, _values(effect, own, 0.0) | shape)
@@ -89,6 +89,6 @@ def _shapes(effect: tuple[Coordinate, ...]) -> Iterator[dict[str, float]]:
 
 
 def _values(effect: tuple[Coordinate, ...], own: tuple[Coordinate, ...], share: float) -> dict[str, float]:
-    """Parameters of an effect in its usual shape: its sizes `own` that share of the usual one, the others none."""
+    """Parameters of an effect in its usual shape: its sizes `own` at a share of the usual size, the others neutral."""
     values = {c.name: c.value(0.0) if c.neutral is None else c.neutral for c in effect}
     return values | {c.name: c.grown(c.typical, share) for c in own} if share else values

@@ -1,4 +1,4 @@
-"""How long a slip takes until it is certain: meanwhile the force goes on rising, by several newtons."""
+"""Time from the start of a slip until it is certain, in which the force rises by several newtons."""
 
 from collections.abc import Sequence
 
@@ -8,15 +8,15 @@ from pneumo_ros.equations.breakaway import REST, Breakaway
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.plant import Model
 
-UNSURE = 0.1  # of that time: by a mass and a friction known to a few per cent
-_STEP, _SLOWEST = 1e-4, 1.0  # s of the integration; N/s: under a slower rise it makes no difference
+UNSURE = 0.1  # relative uncertainty of that time, from mass and friction known to a few per cent
+_STEP, _SLOWEST = 1e-4, 1.0  # s of the integration; N/s: slower rises make no difference
 
 
 def slip_times(model: Model, breakaways: Sequence[Breakaway]) -> tuple[float, ...]:
-    """Time [s] of each from the begin of sliding until it was certain, at most the rest before that counts, 0.15 s.
+    """Time [s] of each breakaway from the start of sliding until it was certain, at most the shortest rest, 0.15 s.
 
-    M v' = F_s + ramp t - F(v) from v = 0, with the friction of steady sliding F(v). The bristle has by then bent to its
-    largest deflection, F_s / sigma_0, which is no sliding.
+    M v' = F_s + ramp t - F(v) from v = 0, with the friction of steady sliding F(v). The largest bristle deflection,
+    F_s / sigma_0, is not sliding and is subtracted from the distance.
     """
     if not breakaways:
         return ()

@@ -1,8 +1,8 @@
-"""What no equation along the motion shows: effects that act between sticking and sliding, judged by short simulations.
+"""Effects between sticking and sliding, which no equation along the motion shows, judged by short simulations.
 
-The mechanics alone are simulated through breakaways, stops and reversals, every start fitted again. How well a model
-does is the median over events of the squared error per sample, or their upper quartile: a single breakaway
-caught a moment too early or too late, which no start mends, says nothing.
+The mechanics alone are simulated through breakaways, stops and reversals, every start fitted again. A model is judged
+by the median over events of the squared error per sample, or by the upper quartile: a single breakaway predicted
+slightly too early or too late, which no start corrects, must not decide.
 """
 
 from collections.abc import Sequence
@@ -26,11 +26,11 @@ Rows = NDArray[np.int64]
 FRICTION_KEYS = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
 STATIC, COMMON = "lugre_friction.static_friction", 0.005
 FEWEST_EVENTS = 12  # events
-SURE_SHARE = 0.02  # share of its value by which a parameter may be uncertain and still be left to the equations
+SURE_SHARE = 0.02  # relative uncertainty below which a parameter keeps its prior from the equations
 POOR = (
     1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
 )
-STALLED, REFITS = 0.5, 10  # share of the error at its start, and number: a refit that leaves more is not restarted
+STALLED, REFITS = 0.5, 10  # share of the error above which a refit is not restarted; most refits
 EQUATIONS_OFF = 0.2  # share by which the equations may be wrong about an effect that the events show better
 FEW_PARAMETERS = 3  # parameters: the events are too few to fit more
 
@@ -69,7 +69,7 @@ def with_values_of(model: Model, other: Model) -> Model:
 
 
 def errors(model: Model, segments: Segments) -> Array:
-    """Mean squared error per sample over the noise's (events,), robust, every start fitted."""
+    """Robust mean squared error per sample over the noise's (events,), every start fitted."""
     x = fit_starts(model, segments)
     whitened = segments.residuals(model, x)[0]
     far = 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
@@ -79,11 +79,11 @@ def errors(model: Model, segments: Segments) -> Array:
 def polished(
     alone: Model, found: Slips, known: dict[str, float], added: Sequence[str] = (), limits: list[str] | None = None
 ) -> Model:
-    """The mechanics with their friction, and what was `added` to them, refitted to the training events.
+    """The mechanics with friction and the `added` effects refitted to the training events.
 
-    `known`: standard deviations of parameters from elsewhere, which hold them; 5 % otherwise. Static friction a few per
-    cent off moves slips to other moments, and the refit into a valley, which it leaves when it is restarted where it
-    ended. `limits` takes a sentence if the last of `REFITS` restarts still helped.
+    `known`: prior standard deviations of parameters from elsewhere; 5 % otherwise. Static friction a few per cent off
+    shifts the slips in time and leads the refit into a valley; a restart from its end leaves the valley. `limits`
+    takes a sentence if the last of `REFITS` restarts still helped.
     """
     prior = friction_priors(alone, known)
     for name in (n for n in known if n.partition(".")[0] in added and n in alone.parameters and alone[n] != 0.0):
@@ -105,15 +105,15 @@ def polished(
 
 
 def _level(errors: Array) -> float:
-    """Geometric mean: a breakaway at the wrong moment counts, but not as much as it errs."""
+    """Geometric mean: a breakaway at the wrong moment counts, but less than its error."""
     return float(np.exp(np.mean(np.log(errors))))
 
 
 def friction_priors(alone: Model, known: dict[str, float]) -> dict[str, float]:
-    """Standard deviations of the friction that may move: those `known` from elsewhere, at most 5 %.
+    """Prior standard deviations of the free friction parameters: those `known` from elsewhere, at most 5 %.
 
-    Of a value that is 0, 5 % of its default. Static friction at least half a per cent: by that much all breakaways may
-    be off together, as slip times may be.
+    If the value is 0, 5 % of its default. For static friction at least 0.5 %, a common error of all breakaways, as slip
+    times are uncertain.
     """
     names = [f"lugre_friction.{key}" for key in FRICTION_KEYS]
     prior = {n: min(known.get(n, np.inf), 0.05 * (alone[n] or alone.usual_size(n))) for n in names}

@@ -1,4 +1,4 @@
-"""What a search did: its rounds and its outcome."""
+"""The rounds and the outcome of a search."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,9 +9,9 @@ from pneumo_ros.plant import Model
 
 @dataclass(frozen=True)
 class Step:
-    """One round: the model it began with, its candidates, best first, and what was added.
+    """One round: the model it started with, its candidates, best first, and the added one.
 
-    None in the last round, and where nothing is left of it beside what later rounds added.
+    `added` is None in the last round, and where the effect was removed later.
     """
 
     model: Model
@@ -23,7 +23,7 @@ class Step:
 
 
 def without(step: Step, gone: Sequence[str], why: str) -> Step:
-    """The round with the candidates of some effects refused afterwards, for that reason."""
+    """The round with the candidates `gone` refused afterwards, for the reason `why`."""
     candidates = tuple(replace(t, refused=why) if t.name in gone else t for t in step.candidates)
     return replace(step, candidates=candidates, added=None if step.added and step.added.name in gone else step.added)
 

@@ -1,8 +1,8 @@
-"""Effects that base parameters replace: the recordings cannot decide, but what is known of those parameters can.
+"""Effects that base parameters replace: the recordings cannot decide, but the priors of those parameters can.
 
-Refitted far from where they are known to be, base parameters do what an effect would do with all of them in their
-places. The way from one to the other is a valley along which predictions hardly change, too bent for one linear step:
-it is followed by fitting all together.
+Base parameters refitted far from their prior centres can imitate a missing effect. Between that fit and the true
+parameters lies a valley along which predictions hardly change. It is too curved for one linear step, so the effect and
+the base parameters are fitted together.
 """
 
 from collections.abc import Sequence
@@ -19,18 +19,18 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-MOST_FOLLOWED, PART_REGAINED = 2, 0.2  # effects followed, and share of the strain that a step of theirs regains
-SIMPLE = 3  # parameters: a profile can replace anything
+MOST_FOLLOWED, PART_REGAINED = 2, 0.2  # most effects followed; least share of the strain that their step regains
+SIMPLE = 3  # most parameters of an effect: a profile can replace anything
 SETS_OF_SLOPES = 12
 
 
 def followed(
     fitter: Fitter, base: BaseFit, screened: Sequence[Hypothesis], anyway: float, known: Sequence[str]
 ) -> tuple[list[Hypothesis], list[Array]]:
-    """Effects that relieve a strained base in a linear step, fitted with all of it, and their held-out residuals.
+    """Effects that relieve a strained base in a linear step, fitted together with it, and their held-out residuals.
 
-    What is `known` to be good is not followed. A step sees but the beginning of the valley: it has to regain a part of
-    the strain only, beyond what the base regains `anyway`.
+    Effects `known` to be good are not followed. A step covers only the start of the valley: it has to regain only part
+    of the strain, beyond the part the base regains `anyway`.
     """
     strained = strain(base.offset)
     if strained < STRAINED:
@@ -47,7 +47,7 @@ def followed(
 
 
 def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[Hypothesis, Array]:
-    """The hypothesis that is judged, and its held-out residual; laws are as free in shape as beside no candidate."""
+    """The hypothesis to judge, and its held-out residual; laws are as free in shape as without a candidate."""
     (fit, held), own = fitter.fits(new, fitter.added(base.model)), coordinates(new.library.find(name))
     shift, after, _value = at_best(fit, fit.residual)
     offset, bends = base.offset.copy(), slice(len(fit.names) - fit.bends, None)

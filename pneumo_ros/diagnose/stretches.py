@@ -1,7 +1,7 @@
-"""The part of recordings by which candidates are ranked first: a share of every run, spread evenly over its time.
+"""The part of recordings for the first ranking of candidates: a share of every run, spread evenly over its time.
 
-Chosen by time alone, not by where the model is worst: where it is worst may be one direction, and there an effect that
-differs between directions and one that does not look the same.
+Chosen by time alone, not by the model's error: the largest errors may all be in one direction, where an effect that
+differs between directions looks like one that does not.
 """
 
 from collections.abc import Sequence
@@ -15,15 +15,15 @@ from pneumo_ros.runs.run import PARTS, Run
 Array = NDArray[np.float64]
 
 LENGTH, LEAST = 4.0, 3.0  # s: usual length of a stretch, and the least that is taken of a run
-SETTLING = 0.5  # s at the begin of a stretch that are not judged, as its hidden states begin at rest
+SETTLING = 0.5  # s at the start of a stretch that are not judged, as its hidden states start at rest
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # fractions of its multiples fill an interval evenly, in no order
 
 
 def stretches(runs: Sequence[Run], seconds: float) -> list[Run]:
-    """Stretches of about `seconds` together, with at least three seconds of every run; none where all are no longer.
+    """Stretches of about `seconds` together, at least three seconds of every run; [] if all runs are no longer.
 
-    Each run is divided into cells of equal length with a stretch in each, at another place from cell to cell, so that
-    no period of a motion is met at one phase only.
+    Each run is divided into cells of equal length with a stretch in each. Its place differs from cell to cell, so that
+    a periodic motion is not sampled at one phase only.
     """
     whole = sum(float(run.time[-1]) for run in runs)
     if whole <= seconds:
@@ -45,7 +45,7 @@ def stretches(runs: Sequence[Run], seconds: float) -> list[Run]:
 
 
 def stretch(run: Run, begin: float, end: float) -> Run:
-    """The run from `begin` to `end` [s]; what is within the settling time of its begin is not judged."""
+    """The run from `begin` to `end` [s]; its settling time at the start is not judged."""
     first, last = round(begin / run.sample_time), min(round(end / run.sample_time), len(run) - 1)
     rows = slice(first, last + 1)
     measured = run.measured[rows].copy()

@@ -1,7 +1,7 @@
-"""How late a position is recorded against the force that drives an axis: less than a sample is no effect, but matters.
+"""Delay of the recorded position against the drive force of an axis: below one sample it is no effect, but matters.
 
-When within a sample a force was measured is not known: where the axis jerks, half a millisecond is newtons, which
-friction would have to make up for. A delay of a sample or more is an effect, and found as one.
+The instant of a force measurement within a sample is not known. Where the axis jerks, half a millisecond makes several
+newtons, which friction would have to compensate. A delay of a sample or more is an effect, and found as an effect.
 """
 
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
 
 EFFECT = "position_sensor_delay"
-SEEN = 5.0  # deviations from none
+SEEN = 5.0  # deviations from zero: a smaller delay is ignored
 
 
 def lateness(model: Model, train: Sequence[Run]) -> float:
-    """How much later than the force positions are recorded [s], within a sample; 0 where none is seen.
+    """Delay of the positions against the force [s], below one sample; 0 where none is significant.
 
-    Of axes driven by a force: a valve's command is held from when it was sent.
+    For force-driven axes only: a valve's command acts from the time it was sent.
     """
     if not model.force_driven or EFFECT in model.effects:
         return 0.0
@@ -33,7 +33,7 @@ def lateness(model: Model, train: Sequence[Run]) -> float:
 
 
 def later(run: Run, seconds: float) -> Run:
-    """The run with its input that much later, to tenths of a sample."""
+    """The run with its input delayed by `seconds`, to tenths of a sample."""
     parts = min(round(seconds / run.sample_time * PARTS), len(run.input) - 1)
     if parts < 1:
         return run

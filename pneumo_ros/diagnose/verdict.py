@@ -1,10 +1,10 @@
-"""The verdict of a diagnosis: what may be kept, what fails, and the one word for it.
+"""The verdict of a diagnosis: the effects that may be kept, the equations that fail, and the verdict's word.
 
 Three sentences hold for every diagnosis:
 
 1. No effect is kept with which held-out predictions get worse (`rises`).
-2. An equation fails if it leaves more than noise, of a size that matters (`fails`); predictions of a signal fail if
-   they are off by more than noise and by a twentieth of what the signal changes by within the horizon (`missed`).
+2. An equation fails if its misfit exceeds noise and is large enough to matter (`fails`); predictions of a signal fail
+   if their error exceeds noise and 5 % of the signal's change within the horizon (`missed`).
 3. Where an equation or a prediction of the final model fails, the verdict is `unknown_effect`, whatever was added.
 """
 
@@ -20,15 +20,15 @@ from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unex
 from pneumo_ros.diagnose.prediction import typical_error
 from pneumo_ros.plant import Model
 
-SIGNIFICANT = 1.3  # times the noise: more remains in an equation or a prediction than noise and coarse sums explain
-MATERIAL_FORCE = 0.007  # of the driving force: a smaller rest is a texture of friction that no model has
-LARGE = 0.05  # of the force that drives the piston, of the flow, or of what a signal changes by within the horizon
-SHAPE_LEFT = 0.25  # of the mean square that the base left: a smaller rest is an inexact law of an added effect
+SIGNIFICANT = 1.3  # times the noise: a larger error is more than noise and coarse sums explain
+MATERIAL_FORCE = 0.007  # of the drive force: a smaller misfit is a texture of friction that no model has
+LARGE = 0.05  # of the drive force, of the flow, or of a signal's change within the horizon
+SHAPE_LEFT = 0.25  # of the base's mean square: a smaller misfit is an inexact law of an added effect
 
 
 @dataclass(frozen=True)
 class Missed:
-    """By how much predictions of one signal are off, in its unit, and what it changes by within the horizon."""
+    """Error of the predictions of one signal, in its unit, and its change within the horizon."""
 
     signal: str
     error: float
@@ -42,7 +42,7 @@ class Missed:
 
 
 def rises(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether held-out predictions, errors over noise by signal, get worse; not where noise explains them both ways."""
+    """Whether held-out predictions, errors over noise by signal, get worse, and are worse than noise explains."""
     return typical_error(after) > max(typical_error(before), SIGNIFICANT)
 
 
@@ -54,9 +54,9 @@ def verdict(added: Sequence[Addition], unexplained: Unexplained | None, missed: 
 
 
 def failing(before: Comparison, after: Comparison, added: Sequence[Addition], model: Model) -> tuple[str, ...]:
-    """What fails in the refitted base: its equations, and the valve or the sensors where an added effect is theirs.
+    """Failing parts of the refitted base: its equations, and valve or sensors where an added effect belongs to them.
 
-    An equation whose rest is too small to matter fails where what was added explains it.
+    An equation whose misfit is too small to matter fails where an added effect explains it.
     """
     found = [n for n in before.equations if fails(n, before, before) or (added and _mended(n, before, after))]
     for addition in added:
@@ -68,22 +68,22 @@ def failing(before: Comparison, after: Comparison, added: Sequence[Addition], mo
 
 
 def fails(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether what an equation leaves is significant and material."""
+    """Whether the misfit of an equation is significant and material."""
     return significant(after.equations[name]) and material(name, before, after)
 
 
 def significant(equation: EquationVerdict) -> bool:
-    """Whether more is left in an equation than noise explains."""
+    """Whether the misfit of an equation is larger than noise explains."""
     return equation.explained_by_noise is False and excess(equation) > 1.0
 
 
 def excess(equation: EquationVerdict) -> float:
-    """Mean square of a residual beyond the noise's, in units of what is significant: above 1 it is."""
+    """Mean square of a residual beyond the noise's, over the significant one: above 1 it is significant."""
     return (equation.ratio_to_noise**2 - 1.0) / (SIGNIFICANT**2 - 1.0)
 
 
 def material(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether what remains matters: forces beyond 0.7 % of the drive, and much, or no small rest of what was there."""
+    """Whether a misfit matters: a force above 0.7 % of the drive force, and large or no small part of the base's."""
     first, last, whole = before.equations[name], after.equations[name], driving(after, name)
     if name == "momentum" and last.residual_rms < MATERIAL_FORCE * whole:
         return False
@@ -91,13 +91,13 @@ def material(name: str, before: Comparison, after: Comparison) -> bool:
 
 
 def _mended(name: str, before: Comparison, after: Comparison) -> bool:
-    """Whether an equation that left more than noise leaves noise, or a quarter of its excess at most, afterwards."""
+    """Whether the significant misfit of an equation falls to noise, or to a quarter of its excess at most."""
     first, last = before.equations[name], after.equations[name]
     return significant(first) and (not significant(last) or excess(last) <= SHAPE_LEFT * excess(first))
 
 
 def driving(comparison: Comparison, equation: str) -> float:
-    """Root mean square over all runs of what drives an equation: force on the piston [N], flow at a port [kg/s]."""
+    """Root mean square over all runs of the drive of an equation: force on the piston [N], flow at a port [kg/s]."""
     seen = [run.motion.seen for run in comparison.runs]
     if equation == "momentum":
         parts = [one["drive"] - one["force"] for one in seen]
@@ -121,7 +121,7 @@ def missed(comparison: Comparison) -> tuple[Missed, ...]:
 
 
 def _change(comparison: Comparison, name: str) -> float:
-    """Root mean square over all runs of what a measured signal changes by within the horizon, in its unit."""
+    """Root mean square over all runs of the change of a measured signal within the horizon, in its unit."""
     changes = []
     for run in (one.motion.run for one in comparison.runs):
         signal, step = run.signals[name], round(comparison.horizon / run.sample_time)
