@@ -1,1 +1,1 @@
-"""What `pneumo compare` runs: by how much a model differs from measurements, in which equation and regime."""
+"""`pneumo compare`: how much a model differs from measurements, in which equation and regime."""

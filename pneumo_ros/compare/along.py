@@ -1,4 +1,4 @@
-"""The model along the measured motion: what its equations claim, sample by sample, where a recording says the rest."""
+"""The model along the measured motion: the claims of its equations, sample by sample, at the measured states."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
 
 Array = NDArray[np.float64]
 
-_SLOWEST = 1e-3  # m/s: slower counts as rest however good the sensor is
+_SLOWEST = 1e-3  # m/s: a slower piston rests, however good the sensor
 _DEVIATIONS = 4.0  # of the estimated velocity: below, motion cannot be distinguished from noise
 
 
@@ -23,13 +23,13 @@ class Along:
     run: Run
     velocity: Array  # local polynomials over +-12 ms
     rest_below: float  # m/s: slower cannot be distinguished from rest
-    input: Array  # V, or N when force-driven: in force from each sample on
-    seen: dict[str, Array]  # what `Model.outputs` shows along the measured states
+    input: Array  # V, or N when force-driven: held from each sample on
+    seen: dict[str, Array]  # `Model.outputs` along the measured states
     reach: float  # m, half the stroke
 
 
 def along(model: Model, run: Run) -> Along:
-    """Drive the model's own states (bristles, spool) along the measured ones and look at its signals."""
+    """Drive the model's own states (bristles, spool) along the measured ones and compute its outputs."""
     frame = run.smoothed.frame[:, : 2 if model.force_driven else 4]
     states, _ = driven(model, frame, run)
     held = np.append(run.held, run.held[-1])

@@ -1,4 +1,4 @@
-"""What `compare` computed, sample by sample, as named arrays: for plots and analyses of one's own."""
+"""The results of `compare`, sample by sample, as named arrays: for your own plots and analyses."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def comparison_arrays(comparison: "Comparison") -> dict[str, NDArray[Any]]:
-    """Arrays of every run k, counted from 1, under `k/...` in SI units; (n,) on the run's grid if not said otherwise.
+    """Arrays of every run k, counted from 1, under `k/...` in SI units; (n,) on the run's grid unless stated otherwise.
 
     name () text; time; velocity, smoothed; input, V or N; measured/SIGNAL; error/SIGNAL of the windowed prediction and
     free/SIGNAL of the free run, model minus measured, NaN where there is none; regime/NAME, whether a sample is in it;

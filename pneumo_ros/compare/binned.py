@@ -1,4 +1,4 @@
-"""Means over bins of a variable, with intervals that know that neighbouring values belong together."""
+"""Means over bins of a variable, with intervals that allow for the correlation of neighbouring values."""
 
 from dataclasses import dataclass
 
@@ -9,8 +9,8 @@ from scipy.special import stdtrit
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-CLUSTER = 0.5  # s: values closer in time than this count as one when a mean's interval is drawn
-_CLUSTERS = 4  # fewer say next to nothing of the scatter between them
+CLUSTER = 0.5  # s: values within this time count as one in the interval of a mean
+_CLUSTERS = 4  # fewest clusters whose scatter gives an interval
 
 
 @dataclass(frozen=True)
@@ -28,14 +28,14 @@ class Bins:
 
 
 def clusters(time: Array, run: Index, duration: float = CLUSTER) -> Index:
-    """A number for each value: the same for those of one run within the same `duration` [s]."""
-    whole = np.floor(time / duration + 1e-9)  # 1.2 s are three times 0.4 s, whatever rounding makes of both
+    """A cluster number for each value: the same for values of one run within the same `duration` [s]."""
+    whole = np.floor(time / duration + 1e-9)  # 1.2 s must be three times 0.4 s despite rounding
     pairs = np.stack([run, whole.astype(np.int64)], axis=1)
     return np.asarray(np.unique(pairs, axis=0, return_inverse=True)[1], dtype=np.int64).reshape(-1)
 
 
 def edges(variable: Array, count: int) -> Array:
-    """Bin edges (at most count + 1,): half by equal width, half by equal numbers, so that neither end is starved."""
+    """Bin edges (at most count + 1,): half by equal width, half by equal numbers, so that no end lacks values."""
     order = np.sort(variable)
     span = float(order[-1] - order[0])
     if not span > 0.0:
@@ -50,8 +50,8 @@ def edges(variable: Array, count: int) -> Array:
 def bin_means(variable: Array, value: Array, cluster: Index, at: Array, fewest: int) -> Bins:
     """Means of `value` (n,) in bins of `variable` (n,) with edges `at`; bins of fewer than `fewest` are left out.
 
-    The interval is the cluster-robust one (Liang and Zeger 1986): deviations are summed within clusters first; with
-    Student's factor for as many clusters as there are.
+    The interval is cluster-robust (Liang and Zeger 1986): deviations are summed within clusters first, and Student's
+    factor is that of the number of clusters.
     """
     place = np.digitize(variable, at) - 1
     rows = []

@@ -1,4 +1,4 @@
-"""Model against measurement: prediction errors per run and signal, residuals per equation, and where they sit."""
+"""Model against measurement: prediction errors per run and signal, residuals per equation, and where they occur."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RunComparison:
-    """What compare says of one run: by signal name, windowed errors and the rms [unit] of one free simulation.
+    """Comparison with one run: by signal name, windowed errors and the rms [unit] of one free simulation.
 
     located: by signal and equation name, the parts of the error by regime and its worst intervals. predicted and
     free_errors: model minus measurement on the run's grid (n,), NaN where there is none, in single precision.
@@ -68,7 +68,7 @@ class Comparison:
     friction: dict[str, FrictionPoints]
 
     def as_dict(self) -> dict[str, Any]:
-        """The JSON of `pneumo compare`; where a simulation left the finite numbers, so do its errors."""
+        """The JSON of `pneumo compare`; errors of a simulation that diverged are not finite."""
         from pneumo_ros.compare.compare_json import comparison_dict
 
         return comparison_dict(self)
@@ -79,7 +79,7 @@ def compare(
 ) -> Comparison:
     """Compare `model` with every run over windows of `horizon` [s] and free, and judge each equation.
 
-    `progress` is called with the share done and the run at hand. Raises UsageError when a run holds no whole window.
+    `progress` is called with the share done and the run's name. Raises UsageError when a run holds no whole window.
     """
     results = []
     for i, run in enumerate(runs):
@@ -103,7 +103,7 @@ def compare(
 
 
 def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
-    """Windowed and free errors and the residuals of one run, and where they sit."""
+    """Windowed and free errors and the residuals of one run, and where they occur."""
     noise = run.noise
     windows, free = predict(model, run, horizon), free_run(model, run)
     rows = windows.start[:, None] + np.arange(1, windows.states.shape[1] + 1)

@@ -1,4 +1,4 @@
-"""The JSON of `pneumo compare`: the contract's keys, and beside them where the errors sit."""
+"""The JSON of `pneumo compare`: the contract's keys, and keys for where the errors occur."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ SCHEMA_VERSION = 1
 
 
 def comparison_dict(comparison: "Comparison") -> dict[str, Any]:
-    """Numbers, texts and arrays by the names programs rely on; keys are only ever added."""
+    """Numbers, texts and arrays by the keys programs rely on; keys may be added, never removed."""
     total = {name: _total([run.located[name] for run in comparison.runs]) for name in comparison.regimes}
     occurring = {name for run in comparison.runs for name in run.masks}
     return {

@@ -1,4 +1,4 @@
-"""Residual of an equation against what it may depend on: binned means with band and coverage, over all runs."""
+"""Residual of an equation against variables it may depend on: binned means with band and coverage, over all runs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from pneumo_ros.equations.weak import Residual
 Array = NDArray[np.float64]
 
 BINS = 40  # a detent of short pitch shows in 40 and hides in 8
-_FEWEST = 8  # windows in a bin: they overlap, so this is two independent ones
+_FEWEST = 8  # windows in a bin: as they overlap, equal to two independent windows
 UNITS = {
     "velocity": "m/s", "position": "m", "voltage": "V", "force": "N", "pressure_a": "Pa", "pressure_b": "Pa",
     "pressure_difference": "Pa", "time": "s",
@@ -24,14 +24,14 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Dependence:
-    """Residual over bins of one variable: means with 95 % intervals, what noise alone gives, seconds of coverage."""
+    """Residual over bins of one variable: means with 95 % intervals, noise, seconds of coverage."""
 
     variable: str
     bins: Bins
     noise: Array  # (bins,) rms of the noise of single windows, in the residual's unit
     seconds: Array  # (bins,)
-    constant_share: float  # of the squared residual: what one constant explains
-    explained_share: float  # what this variable explains beyond the constant, predicted for windows left out
+    constant_share: float  # of the squared residual: explained by one constant
+    explained_share: float  # explained by this variable beyond the constant, predicted for windows left out
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON: columns over the bins."""
@@ -45,7 +45,7 @@ class Dependence:
 
 
 def dependences(residuals: Sequence[Residual], motions: Sequence[Along], width: float) -> dict[str, Dependence]:
-    """One equation's residuals of several runs, each over windows of `width` [s], against every variable they have."""
+    """One equation's residuals of several runs, over windows of `width` [s], against every variable in all runs."""
     parts = [_variables(residual, motion, width) for residual, motion in zip(residuals, motions, strict=True)]
     names = [name for name in UNITS if all(name in part for part in parts)]
     value, noise, time = (

@@ -8,14 +8,14 @@ from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, VARIABLES, a
 
 Level = Literal["good", "bad", "open"]
 
-_FOLLOWS = 0.1  # share of the squared residual from which on a variable or a constant is worth naming
-_TIED = 0.8  # of the best share: variables this close cannot be distinguished here
-_OFTEN = 0.1  # share of the error from which on a regime is worth naming
+_FOLLOWS = 0.1  # least share of the squared residual for which a variable or a constant is named
+_TIED = 0.8  # of the best share: variables this close cannot be distinguished
+_OFTEN = 0.1  # least share of the error for which a regime is named
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One sentence on an equation or a signal, and whether it is good news, bad news or left open."""
+    """One sentence on an equation or a signal, and whether it is good, bad or open."""
 
     target: str
     level: Level
@@ -69,9 +69,9 @@ def _signal(result: Mapping[str, Any], name: str) -> Finding:
 
 
 def _where(name: str, found: Mapping[str, Any]) -> Iterator[str]:
-    """The regimes in which the error is concentrated: their share of it against their share of the time.
+    """The regimes in which the error is concentrated: their share of the error and of the time.
 
-    What fills chamber a empties chamber b: the flows of one chamber are named, its own where the target has one.
+    Filling chamber a empties chamber b, so the flows of one chamber are named: the target's own if it has one.
     """
     other = ("filling_a", "exhausting_a") if "_b" in name else ("filling_b", "exhausting_b")
     shares = {n: s for n, s in found["regimes"].items() if s["share"] >= _OFTEN and n in REGIMES and n not in other}
@@ -92,7 +92,7 @@ def _concentration(regime: str, share: Mapping[str, Any]) -> str:
 
 
 def _follows(found: Mapping[str, Any]) -> Iterator[str]:
-    """What the residual depends on."""
+    """The variables that the residual depends on."""
     against = found["against"]
     shares = {n: a["explained_share"] for n, a in against.items()}
     best = max(shares.values(), default=0.0)

@@ -1,4 +1,4 @@
-"""Where the errors of one run sit: prediction errors of its signals and residuals of its equations, by regime."""
+"""Where the errors of one run occur: prediction errors of its signals and residuals of its equations, by regime."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What a refit changed: every free parameter with its interval, and which moved beyond what was known of it."""
+"""Changes by a refit: every free parameter with its interval, and the parameters that moved beyond their priors."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,7 +15,7 @@ def refit_dict(found: Refit, runs: Sequence[str]) -> dict[str, Any]:
 
 
 def estimates_dict(model: Model, estimates: Mapping[str, Estimate], runs: Sequence[str]) -> dict[str, Any]:
-    """The same of estimates of any origin, by dotted name of the model's parameters."""
+    """The same for estimates of any origin, by dotted name of the model's parameters."""
     parameters = {name: _parameter(model, name, estimate) for name, estimate in estimates.items()}
     return {
         "runs": list(runs),

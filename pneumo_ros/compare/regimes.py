@@ -1,6 +1,6 @@
 """Regimes of a motion, as masks on the grid of a run: from the measured signals and the model's parameters alone.
 
-A sample may be in several regimes. Stick and slide part the time between them; the others do not.
+A sample may be in several regimes. Stick and slide together cover all samples once; the others overlap.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ Mask = NDArray[np.bool_]
 
 SHORTEST_REST = 0.02  # s: a shorter stop is a velocity passing through zero
 REVERSAL = 0.05  # s before and after the change of direction
-LONGEST_STOP = 0.2  # s: after a longer one the piston has rested, and leaves by a breakaway
+LONGEST_STOP = 0.2  # s: a longer stop is a rest that ends with a breakaway
 BREAKAWAY = (0.02, 0.1)  # s before and after a rest ends
 NEAR_STOP = 0.02  # of the stroke
 NEAR_NULL = 0.1  # V of opening beyond the dead zone
@@ -84,7 +84,7 @@ def _reversal(motion: Along) -> Mask:
 
 
 def _direction(motion: Along) -> Array:
-    """1, -1 or 0; a way that is kept for less than 20 ms is what a filter makes of a sudden stop."""
+    """1, -1 or 0; a direction kept for less than 20 ms is the filter's response to a sudden stop, and counts as 0."""
     result = np.zeros(len(motion.velocity))
     for sign in (1.0, -1.0):
         begin, end = stretches(sign * motion.velocity >= motion.rest_below)

@@ -1,4 +1,4 @@
-"""Where an error sits: its size in each regime, its share of the whole, and the worst intervals."""
+"""Where an error occurs: its size in each regime, its share of the whole, and the worst intervals."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ Array = NDArray[np.float64]
 _BLOCK = 0.2  # s: the shortest worst interval
 _WORST = 3  # intervals named
 _HUGE = 1e100  # in any unit
-_PRESENT = 0.3  # share of an interval from which on a regime is named with it
+_PRESENT = 0.3  # least share of an interval for which a regime is named with it
 
 
 @dataclass(frozen=True)
 class Share:
     """An error in one regime: rms in its unit and in noise deviations, seconds, and shares of squared error and time.
 
-    Shares of regimes that part the time (stick and slide) add up to 1; a sample in several regimes counts in each.
+    Shares of stick and slide add up to 1; a sample in several regimes counts in each.
     """
 
     rms: float
@@ -66,14 +66,14 @@ class Errors:
     def of(
         cls, time: Array, value: Array, noise: Array | float, spacing: float, weights: Mapping[str, Array]
     ) -> "Errors":
-        """Without the entries that are not finite; what diverges is limited to where squares can be added."""
+        """Errors without the entries that are NaN; diverging ones are limited so that their squares can be added."""
         good, value = np.isfinite(value), np.clip(value, -_HUGE, _HUGE)
         level = np.broadcast_to(np.asarray(noise, dtype=float), value.shape)[good]
         return cls(time[good], value[good], level, spacing, {name: w[good] for name, w in weights.items()})
 
 
 def pooled(parts: list[Errors]) -> Errors:
-    """Several runs as one; a regime that a run does not know counts nothing there."""
+    """Several runs as one; a regime that a run does not have has weight 0 there."""
     names = dict.fromkeys(name for part in parts for name in part.weights)
     return Errors(
         np.concatenate([p.time for p in parts]),
@@ -107,7 +107,7 @@ def by_regime(errors: Errors) -> dict[str, Share]:
 def worst(errors: Errors, count: int = _WORST) -> list[Interval]:
     """The intervals of largest mean squared error, worst first, grown from blocks of 0.2 s.
 
-    An interval takes in its neighbours while they are at least half as bad in rms as its worst block.
+    An interval grows over neighbouring blocks while their rms is above half that of its worst block.
     """
     if not len(errors.time):
         return []
@@ -121,7 +121,7 @@ def worst(errors: Errors, count: int = _WORST) -> list[Interval]:
         if not left[peak] > 0.0:
             break
         first, last = _grow(left, peak)
-        left[max(first - 1, 0) : last + 2] = 0.0  # what is beside it is the same event
+        left[max(first - 1, 0) : last + 2] = 0.0  # blocks beside it belong to the same event
         found.append(_interval(errors, white, (block >= first) & (block <= last)))
     return found
 

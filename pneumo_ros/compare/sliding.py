@@ -1,7 +1,7 @@
 """The friction map of any motion: measured friction force over velocity while the piston slides, and the model's.
 
 Newton's law along the measured signals, F = drive - load - M a, in weak form over windows of 100 ms with the test
-function (1 - tau^2)^6: the position is not differentiated, and force and acceleration are weighted alike.
+function (1 - tau^2)^6: the position is not differentiated, and force and acceleration have the same weights.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 MAP_WINDOW = 0.1  # s
 _EDGE = 1e-3  # m from the end of the stroke, where the stop's force is not friction
 _BINS = 24  # per direction, over log velocity
-_FEWEST = 8  # windows in a bin: they overlap, so this is two independent ones
+_FEWEST = 8  # windows in a bin: as they overlap, equal to two independent windows
 DIRECTIONS = {"extending": 1.0, "retracting": -1.0}
 
 
@@ -42,7 +42,7 @@ class FrictionPoints:
 
 
 def friction_map(model: Model, motions: Sequence[Along]) -> dict[str, FrictionPoints]:
-    """Both directions of the map from all runs; a direction in which nothing slid long enough is left out."""
+    """Both directions of the map from all runs; a direction without long enough sliding is left out."""
     parts = [_windows(model, motion) for motion in motions]
     run = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
     time, velocity, force, claimed = (np.concatenate([part[i] for part in parts]) for i in range(4))
@@ -59,7 +59,7 @@ def _direction(velocity: Array, force: Array, claimed: Array, cluster: NDArray[n
     count = min(_BINS, max(len(velocity) // (2 * _FEWEST), 1))
     at = np.exp(edges(np.log(velocity), count))
     at[0], at[-1] = 0.0, np.inf
-    bins = bin_means(velocity, force - claimed, cluster, at, _FEWEST)  # what friction changes within a bin cancels
+    bins = bin_means(velocity, force - claimed, cluster, at, _FEWEST)  # changes of friction within a bin cancel
     model = np.array([claimed[inside].mean() for inside in bins.members])
     force, low, high = (model + column for column in (bins.mean, bins.below, bins.above))
     return FrictionPoints(bins.centre, force, low, high, model, 0.25 * MAP_WINDOW * bins.count)

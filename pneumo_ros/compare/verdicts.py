@@ -11,11 +11,11 @@ from pneumo_ros.equations.weak import Residual
 
 Array = NDArray[np.float64]
 
-# times the noise: what estimating the noise from the same recording leaves uncertain, and what the scatter of a mean
-# square over overlapping windows adds, which falls with the root of their number
+# times the noise: uncertainty of a noise estimated from the same recording, and scatter of a mean square over
+# overlapping windows, which falls with the root of their number
 _EXPLAINED, _SCATTER = 1.1, 3.0
 _SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
-FARTHEST = 1e6  # noise deviations: no error counts as larger in the size of a window
+FARTHEST = 1e6  # noise deviations: larger errors are limited to this
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class SignalError:
     max: float
     fit_percent: float  # 100 (1 - |error| / |measured - its mean|)
     noise: float
-    typical: float = math.nan  # geometric mean over windows of their rms over noise: one bad window decides nothing
+    typical: float = math.nan  # geometric mean over windows of their rms over noise, insensitive to one bad window
 
     @property
     def ratio(self) -> float:
@@ -64,7 +64,7 @@ def _judge(parts: list[Residual]) -> EquationVerdict:
 
 
 def judge_signal(error: Array, measured: Array, noise: float) -> SignalError:
-    """Judge prediction errors (windows, samples) beside what was measured at the same samples, both of one unit."""
+    """Judge prediction errors (windows, samples) with the measured values at the same samples, both in one unit."""
     spread = float(np.std(measured))
     rms = root_mean_square(error)
     fit = 100.0 * (1.0 - rms / spread) if spread > 0.0 else math.nan
@@ -79,6 +79,6 @@ def window_sizes(error: Array, noise: float) -> Array:
 
 
 def root_mean_square(values: Array) -> float:
-    """Of the values that are there; NaN when there are none."""
+    """Root mean square of the values that are not NaN; NaN when there are none."""
     with np.errstate(over="ignore", invalid="ignore"):
         return float(np.sqrt(np.nanmean(np.square(values)))) if np.size(values) else math.nan

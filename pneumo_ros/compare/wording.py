@@ -1,4 +1,4 @@
-"""What signals, equations, regimes and variables are called, and numbers as people read them. Plain Python only."""
+"""Names of signals, equations, regimes and variables in texts, and numbers as text. Plain Python only."""
 
 import math
 
@@ -49,7 +49,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def amount(value: float | None, target: str) -> str:
-    """A value in SI units as people read it: 0.00034 of position_m is '0.34 mm'."""
+    """A value in SI units as text: 0.00034 of position_m is '0.34 mm'."""
     _, unit, factor = TARGETS[target]
     return "-" if value is None else f"{number(factor * value)} {unit}"
 

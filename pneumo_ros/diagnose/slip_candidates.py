@@ -28,9 +28,7 @@ SHARE_REMOVED = (
 )
 MOST_FITTED = 3  # candidates that are fitted, those with the best starts
 EXPLAINED = 0.9  # share of the error beyond the noise's
-PART_EXPLAINED = (
-    0.3  # share of the error beyond noise: a candidate that removes as much is restarted from other sizes
-)
+PART_EXPLAINED = 0.3  # share of the error beyond noise: a candidate that removes as much is restarted from other sizes
 RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size; most of the old error that may be left for another restart
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: an effect's own state starts free in every event, so that it can follow any slow force

@@ -11,10 +11,10 @@ from pneumo_ros.runs.smooth import smooth
 
 Array = NDArray[np.float64]
 
-SCATTER, UNSEEN = 0.2, 0.02  # N between breakaways under a slow force; s until sliding shows
+SCATTER, UNSEEN = 0.2, 0.02  # N between breakaways under a slow force; s until sliding is detected
 REST = 0.15  # s at rest before it counts as a breakaway
 _EDGE = 2e-3  # m from the end of the stroke
-_CHUNK = 2000  # samples looked through at a time
+_CHUNK = 2000  # samples searched at a time
 _SLIP = 5.0  # times the largest bristle deflection: certainly sliding
 
 
@@ -33,15 +33,15 @@ class Breakaway:
 
     @property
     def spread(self) -> float:
-        """How far the force may be off [N], where nobody has worked out how long the slip took to show."""
+        """Uncertainty of the force [N], when the time until the slip was detected is not computed."""
         return float(force_spread(self.ramp))
 
 
 def force_spread(ramp: float | Array, unsure: float = UNSEEN) -> float | Array:
-    """How far the force at a breakaway may be off [N]: a fifth of a newton, and its rise `ramp` [N/s] while unseen.
+    """Uncertainty of the force at a breakaway [N]: 0.2 N, plus its rise `ramp` [N/s] before sliding is detected.
 
-    The one noise model of breakaways, of identification, diagnosis and planning. `unsure` [s]: by how much the moment
-    at which sliding began is uncertain.
+    Identification, diagnosis and planning all use this noise model. `unsure` [s]: uncertainty of the moment at which
+    sliding began.
     """
     return SCATTER + unsure * np.abs(ramp)
 
@@ -81,7 +81,7 @@ def _leaves(y: Array, start: int, here: float, slip: float) -> int | None:
 
 
 def holding_force(model: Model, run: Run) -> Array:
-    """Force on the piston (n,) [N] without friction and inertia: what friction holds while it rests."""
+    """Force on the piston (n,) [N] without friction and inertia; friction balances it while the piston rests."""
     states = np.tile(model.state(), (len(run), 1))
     states[:, 0] = run.position
     if not model.force_driven:

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Bump:
-    """phi(t) = (1 - tau^2)^6 on a window of `width` samples; sums of a signal with these weights are means over it.
+    """phi(t) = (1 - tau^2)^6 on a window of `width` samples; sums of a signal with these weights are weighted means.
 
     phi, first, second (width,): weights of phi and of its first [1/s] and second [1/s2] derivative in time.
     """
@@ -22,13 +22,13 @@ class Bump:
 
     @classmethod
     def of(cls, duration: float, sample_time: float) -> "Bump":
-        """A bump over `duration` [s], nine samples at least."""
+        """A bump over `duration` [s], at least nine samples."""
         half = max(round(0.5 * duration / sample_time), 4)
         tau = np.arange(-half, half + 1) / half
         span, c = half * sample_time, 1.0 - tau**2
         phi = c**6 / np.sum(c**6)
         first = -tau * c**5
-        first /= -np.sum(first * tau) * span  # exact for a constant rate, however few the samples
+        first /= -np.sum(first * tau) * span  # exact for a constant rate with any number of samples
         second = -12.0 * c**5 + 120.0 * tau**2 * c**4
         second -= np.sum(second) * phi
         second /= 0.5 * np.sum(second * tau**2) * span**2  # exact for a constant acceleration
@@ -48,7 +48,7 @@ class Bump:
         if len(signal) < self.width:
             return np.empty(0)
         count, parts = (len(signal) - self.width) // self.step + 1, -(-self.width // self.step)
-        # Windows share quarters: each is multiplied once, by all weights that it meets.
+        # Windows share quarters: each quarter is multiplied once, by all weights that apply to it.
         quarters, columns = np.zeros((count + parts - 1, self.step)), np.zeros((parts, self.step))
         own = min(len(signal), quarters.size)
         quarters.ravel()[:own], columns.ravel()[: self.width] = signal[:own], weights
@@ -67,9 +67,9 @@ class Bump:
         return np.asarray(every[:: self.step])
 
     def noise(self, terms: list[tuple[Array, Array]]) -> Array:
-        """Standard deviation (windows,) of a residual that unit white noise enters by the sum over `terms`.
+        """Standard deviation (windows,) of a residual to which unit white noise contributes by the sum over `terms`.
 
-        Each term is weights (width,) and a signal (n,), by which the noise of each sample is multiplied.
+        Each term is weights (width,) and a signal (n,) that multiplies the noise of each sample.
         """
         gain = sum(weights * self._windows(signal) for weights, signal in terms)
         return np.asarray(np.sqrt(np.sum(np.square(gain), axis=1)))

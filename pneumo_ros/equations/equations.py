@@ -1,4 +1,4 @@
-"""Equations of motion and of the chambers in weak form over windows: residual, the noise it inherits, where it counts.
+"""Equations of motion and of the chambers in weak form over windows: residual, its noise, usable windows.
 
 Each equation is multiplied by a smooth bump phi(t) = (1 - tau^2)^6 and integrated by parts over a short window:
 
@@ -6,8 +6,8 @@ Each equation is multiplied by a smooth bump phi(t) = (1 - tau^2)^6 and integrat
     chamber:   (1 / I) int (-phi' L - phi (p'/p + gamma V'/V)_model) dt  p V / (gamma R T)   [kg/s]
 
 with I = int phi and L = ln p + gamma ln V. The chamber's form needs no velocity:
-the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction does, and what the noise of an estimated
-velocity does to it, int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise stated with each residual.
+the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction needs it; the effect of velocity noise,
+int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise of each residual.
 """
 
 from dataclasses import dataclass
@@ -24,15 +24,15 @@ from pneumo_ros.runs.smooth import smooth
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-SLIDING = 0.01  # m/s: slower, friction is not a function of velocity and the momentum equation says little
-# How coarse sums over samples are, measured on simulations without noise at 50 Hz to 4 kHz; see `Bump.coarseness`
+SLIDING = 0.01  # m/s: below, friction is not a function of velocity and the momentum equation is not usable
+# Errors of sums over samples, measured on simulations without noise at 50 Hz to 4 kHz; see `Bump.coarseness`
 _MOMENTUM_SUMS, _CHAMBER_SUMS = 0.12, 4.0
 
 
 def centred(mean: Array) -> Array:
-    """Mean derivatives (n, ...) of the intervals on both sides of a sample, from those of the intervals up to each.
+    """Mean derivatives (n, ...) of the intervals on both sides of a sample, from those of the interval before each.
 
-    A sum over samples is then the integral, input steps and all.
+    A sum over samples is then the integral, with input steps included.
     """
     return np.asarray(0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0)))
 
@@ -52,7 +52,7 @@ class Momentum:
         return MeasuredMotion.of(bump, position).value(mass, acceleration)
 
     def noise(self, bump: Bump) -> Array:
-        """Standard deviation (windows,) that sensor noise and sums over samples alone give."""
+        """Standard deviation (windows,) by sensor noise and by the error of sums over samples."""
         model, run, noise = self.model, self.run, self.run.noise
         ones = np.ones(len(run))
         by_position = bump.noise([(bump.second, ones), (bump.first, self._steep)])
@@ -66,7 +66,7 @@ class Momentum:
         return np.asarray(np.sqrt(np.sum(np.square(parts), axis=0)))
 
     def usable(self, bump: Bump) -> Mask:
-        """Windows that slide throughout, measured throughout, away from the ends of the stroke."""
+        """Windows with sliding and measurement throughout, away from the ends of the stroke."""
         run, reach = self.run, 0.5 * self.model["piston.stroke"] - 1e-3
         slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
         return _free_of(slow | ~run.measured | (np.abs(run.position) > reach), bump)
@@ -90,14 +90,14 @@ class Chamber:
         return self.measured(bump, states).value(pressure_rate)
 
     def measured(self, bump: Bump, states: Array) -> "MeasuredChamber":
-        """What the residual takes from the states alone."""
+        """The part of the residual that depends on the states alone."""
         p = states[:, self.column]
         log = np.log(p) + self.gamma * np.log(self.volume(states[:, 0]))
         rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, self._rate(states, np.zeros(len(p))))
         return MeasuredChamber(bump, self.column, self._content(bump, states), rate, 1.0 / p)
 
     def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
-        """Standard deviation (windows,) that sensor noise and sums alone give.
+        """Standard deviation (windows,) by sensor noise and by the error of sums.
 
         `steep` (n,): derivative of the claimed pressure derivative by the pressure.
         """
@@ -127,7 +127,7 @@ class Chamber:
 
 @dataclass(frozen=True)
 class MeasuredMotion:
-    """What measurements say of the motion in windows, whatever a model claims; acceleration (windows,) [m/s2]."""
+    """The measured motion in windows, independent of a model; acceleration (windows,) [m/s2]."""
 
     bump: Bump
     acceleration: Array
@@ -144,7 +144,7 @@ class MeasuredMotion:
 
 @dataclass(frozen=True)
 class MeasuredChamber:
-    """What measurements say of a chamber in windows, whatever a model claims.
+    """The measured state of a chamber in windows, independent of a model's claims.
 
     column: of its pressure among the states; content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow
     per content [1/s]; per_pressure (n,): 1 / p [1/Pa].

@@ -13,10 +13,10 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain, smooth
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-# N, how far the balance of forces may be off: a piston that has just stopped rings on its bristle (84 Hz on the default
-# machine) with tens of newtons, which +-12 ms smooth away
+# N, error of the balance of forces: a piston that has just stopped oscillates on its bristle (84 Hz on the default
+# machine) with tens of newtons, which smoothing over +-12 ms removes
 _FORCE = 10.0
-# of how much a state varies that no sensor shows: how far what is driven along may be off
+# of the variation of a state without sensor: error of its value when driven along the measurements
 _UNSURE = 0.3
 
 
@@ -45,8 +45,8 @@ def first_guess(model: Model, run: Run, at: Index) -> Array:
 def guess_states(model: Model, run: Run, at: Index) -> Guess:
     """States at grid points `at`: measured ones smoothed, others driven along, bristles by balance of forces.
 
-    What sensors read is corrected for the model's sensor effects. Raises DataError when the run leaves the stroke of
-    the model.
+    Readings are corrected for the model's sensor effects. Raises DataError when the run leaves the stroke of the
+    model.
     """
     check_position(model, run)
     guess = run.smoothed
@@ -81,7 +81,7 @@ def _deflection_limit(model: Model) -> float:
 
 
 def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
-    """Standard deviation (states,) of each state about its first guess; of the measured ones, of what sensors read."""
+    """Standard deviation (states,) of each state about its first guess; for measured states that of the readings."""
     noise = run.noise
     with np.errstate(over="ignore", invalid="ignore"):
         scale: Array = np.maximum(np.nan_to_num(_UNSURE * np.std(states, axis=0), posinf=1.0), 1e-9)
@@ -92,11 +92,11 @@ def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
     if "z" in model.states:
         stiffness = model["lugre_friction.bristle_stiffness"]
         scale[model.states.index("z")] = _FORCE / stiffness
-        scale[1] += _FORCE / np.sqrt(stiffness * model["piston.mass"])  # of a ring with that force
+        scale[1] += _FORCE / np.sqrt(stiffness * model["piston.mass"])  # of an oscillation with that force
     return scale
 
 
 def measured_columns(model: Model) -> dict[str, int]:
-    """Which state each measured signal shows, by report name; pressures only where the model has chambers."""
+    """Column of the state of each measured signal, by report name; pressures only where the model has chambers."""
     shown = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
     return {name: model.states.index(state) for name, state in shown.items() if state in model.states}

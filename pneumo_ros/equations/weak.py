@@ -1,6 +1,6 @@
-"""Residuals of the model's equations along the measured signals, in weak form: nothing measured is differentiated.
+"""Residuals of the model's equations along the measured signals, in weak form: no measured signal is differentiated.
 
-The equations themselves, their noise and where they count are those of `equations.equations`.
+The equations themselves, their noise and usable windows are those of `equations.equations`.
 """
 
 from dataclasses import dataclass
@@ -18,18 +18,18 @@ from pneumo_ros.runs.sensors import driven
 Array = NDArray[np.float64]
 
 MOMENTUM_WINDOW, CHAMBER_WINDOW = 0.1, 0.2  # s
-FORCE_WINDOW = 0.02  # s: little more than the sampling, so that the error is that of the force itself
+FORCE_WINDOW = 0.02  # s: so short that the error is that of the force itself
 
 
 @dataclass(frozen=True)
 class Residual:
-    """Residual of one equation in consecutive windows: what is measured minus what the model claims."""
+    """Residual of one equation in consecutive windows: measured minus claimed by the model."""
 
     equation: str  # momentum, chamber_a or chamber_b
     unit: str
     time: Array  # (windows,) centres [s]
     value: Array  # (windows,) in `unit`
-    noise: Array  # (windows,) standard deviation that sensor noise and sums over samples alone give, in `unit`
+    noise: Array  # (windows,) standard deviation by sensor noise and the error of sums over samples, in `unit`
 
     @property
     def rms(self) -> float:
@@ -45,8 +45,8 @@ class Residual:
 def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
     """Residuals of momentum and, with chambers, of both chambers along a run, by equation name.
 
-    There are no windows where there is nothing to judge: no sliding for the momentum, a run shorter than a window.
-    Raises DataError when the run leaves the stroke of the model.
+    There are no windows without data to judge: no sliding for the momentum, a run shorter than a window. Raises
+    DataError when the run leaves the stroke of the model.
     """
     check_position(model, run)
     states, claimed = _along(model, run)
@@ -58,10 +58,10 @@ def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
 
 
 def force_error(model: Model, run: Run) -> float:
-    """Relative force error in percent: |measured - modelled driving force| / |measured|, both averaged over 20 ms.
+    """Relative force error in percent: |measured - modelled drive force| / |measured|, both averaged over 20 ms.
 
-    The figure that identification of drives is judged by (inverse dynamics, Gautier and Khalil); it takes rest and
-    reversals in, unlike the residuals.
+    The usual figure of merit for the identification of drives (inverse dynamics, Gautier and Khalil); unlike the
+    residuals it includes rest and reversals.
     """
     bump = Bump.of(FORCE_WINDOW, run.sample_time)
     states, claimed = _along(model, run)
@@ -73,7 +73,7 @@ def force_error(model: Model, run: Run) -> float:
 
 
 def _along(model: Model, run: Run) -> tuple[Array, Array]:
-    """States and claimed derivatives (n, states) along the measured signals, what sensors do taken back."""
+    """States and claimed derivatives (n, states) along the measured signals, corrected for sensor effects."""
     states, mean = driven(model, measured_frame(run, model.force_driven), run)
     return states, centred(mean)
 

@@ -1,1 +1,1 @@
-"""What `pneumo identify` runs: static friction map, breakaways, flow and presliding from constant-voltage runs."""
+"""`pneumo identify`: static friction map, breakaways, flow and presliding from constant-voltage runs."""

@@ -1,4 +1,4 @@
-"""The parts of an identification put together: later parts build on the values of earlier ones."""
+"""The parts of an identification together: later parts use the values of earlier ones."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from pneumo_ros.runs.run import Run
 
 STATIC, COULOMB = "lugre_friction.static_friction", "lugre_friction.coulomb_friction"
 STRIBECK, DRAG = "lugre_friction.stribeck_velocity", "quadratic_drag.coefficient"
-ADDED = (  # by effects that a machine may have besides, as far as steady motion shows them
+ADDED = (  # friction parameters of optional effects that steady motion shows
     "viscous_friction.coefficient",
     "stribeck_shape.exponent",
     "asymmetric_friction.ratio",
@@ -30,7 +30,7 @@ _UNKNOWN = 0.3  # relative prior deviation of friction parameters that the map l
 
 @dataclass(frozen=True)
 class Found:
-    """One parameter: value, 95 % interval (None where not determined), unit, and a sentence on where it comes from."""
+    """One parameter: value, 95 % interval (None where not determined), unit, and a sentence on its source."""
 
     value: float
     interval: tuple[float, float] | None
@@ -66,12 +66,12 @@ class Assembly:
         self.unknown.pop(name, None)
 
     def leave(self, name: str, why: str) -> None:
-        """Leave one value as it was."""
+        """Keep the old value of a parameter."""
         self.note(name, self.start[name], None, f"not determined: {why}")
         self.unknown[name] = why
 
     def _correlate(self, names: Sequence[str], matrix: NDArray[np.float64]) -> None:
-        """Keep the correlations among determined parameters; what other fits said of them is superseded."""
+        """Keep the correlations among determined parameters; they replace those of earlier fits."""
         good = [name for name in names if self.found.get(name) and self.found[name].interval]
         self.correlations = {pair: r for pair, r in self.correlations.items() if not set(pair) & set(good)}
         place = {name: names.index(name) for name in good}
@@ -97,7 +97,7 @@ class Assembly:
     def motion(
         self, runs: Sequence[Run], breakaways: Sequence[Breakaway], progress: Callable[[float, str], None]
     ) -> None:
-        """Static friction and Stribeck velocity, and what the map left open, from the motion after breakaways."""
+        """Static friction, Stribeck velocity and undetermined map parameters from the motion after breakaways."""
         sure = [name for name, found in self.found.items() if found.interval]
         fit = fit_motion(self.model, runs, breakaways, self._open(), sure, progress)
         if fit is None:
@@ -111,7 +111,7 @@ class Assembly:
         self._correlate([fit.names[k] for k in keep], fit.correlation[np.ix_(keep, keep)])
 
     def _open(self) -> dict[str, float]:
-        """Prior deviations of what the motion is to determine."""
+        """Prior deviations of the parameters that the motion has to determine."""
         free = {}
         for name in self.wanted:
             size = max(abs(self.model[name]), abs(self.model.specification(name).default))
@@ -125,7 +125,7 @@ class Assembly:
         return free
 
     def map_again(self, points: Sequence[MapPoint], breakaways: Sequence[Breakaway]) -> None:
-        """The map once more where it left the Stribeck velocity open and the motion determined it."""
+        """Fit the map again if it did not determine the Stribeck velocity and the motion did."""
         if STRIBECK not in self.map_fit.undetermined or STRIBECK in self.unknown:
             return
         by_motion = {name for name in self.wanted if self.found[name].remark.startswith("motion")}

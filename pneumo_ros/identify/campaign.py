@@ -1,9 +1,9 @@
 """Identification from a campaign of constant-voltage runs: the paper's procedure, with intervals and reasons.
 
-1. stretches of constant velocity and pressures -> static map -> F_c, C_d (viscous coefficient, if asked)
-2. breakaways from rest -> F_s; the motion that follows them -> v_s, and F_s once more
-3. the same stretches' mass balance -> flow coefficients and dead zone
-4. presliding -> bristle stiffness; Eqs. 15-16, corrected, for what it does not show
+1. stretches of constant velocity and pressures -> static map -> F_c, C_d (viscous coefficient, if requested)
+2. breakaways from rest -> F_s; the motion that follows them -> v_s, and F_s again
+3. the mass balance of the same stretches -> flow coefficients and dead zone
+4. presliding -> bristle stiffness; Eqs. 15-16, corrected, for parameters it does not show
 """
 
 from collections.abc import Callable, Sequence
@@ -26,10 +26,10 @@ FRICTION = (STATIC, COULOMB, STRIBECK, DRAG, *ADDED)  # of the static map, where
 
 @dataclass(frozen=True)
 class Identification:
-    """Result of a campaign: the model, every parameter looked for, and the evidence.
+    """Result of a campaign: the model, every fitted parameter, and the evidence.
 
-    undetermined: what was asked for and the runs do not show, with a plain sentence each; such a parameter keeps the
-    value it had. correlations: pairs of parameters fitted together, -1 to 1.
+    undetermined: requested parameters that the runs do not determine, with a sentence each; they keep their old values.
+    correlations: pairs of parameters fitted together, -1 to 1.
     """
 
     before: Model
@@ -48,7 +48,7 @@ def identify(
 ) -> Identification:
     """Identify friction, and where there is a valve its flow coefficients, from constant-voltage runs.
 
-    `free` are the friction parameters to fit; those the model does not have are passed over. Runs may differ in sample
+    `free` are the friction parameters to fit; those the model does not have are ignored. Runs may differ in sample
     time. Raises UsageError for a model without LuGre friction, DataError when the runs hold too few steady stretches
     or leave the stroke.
     """
@@ -83,7 +83,7 @@ def _check(model: Model, runs: Sequence[Run]) -> None:
         )
     names = [run.name for run in runs]
     if repeated := sorted({name for name in names if names.count(name) > 1}):
-        raise UsageError(f"{repeated[0]} is given twice; give each recording once, and different ones different names")
+        raise UsageError(f"{repeated[0]} is given twice; give each recording once, and each its own name")
     for run in runs:
         check_position(model, run)
 
@@ -98,5 +98,5 @@ def _enough(windows: Sequence[Window], points: Sequence[MapPoint], held: str) ->
     common = max(set(reasons), key=reasons.count)
     raise DataError(
         f"no stretch of constant velocity in {len(windows)} windows of constant {held}; "
-        f"{reasons.count(common)} times: {common}. Leave out what is no such run, or {advice}"
+        f"{reasons.count(common)} times: {common}. Leave out other runs, or {advice}"
     )

@@ -1,4 +1,4 @@
-"""Confidence of least-squares estimates when errors within one run belong together."""
+"""Confidence of least-squares estimates when errors within one run are correlated."""
 
 from collections.abc import Callable, Sequence
 
@@ -9,7 +9,7 @@ from scipy.stats import t as student
 Array = NDArray[np.float64]
 
 _FEW_GROUPS = 6
-_BLIND = 1e-10  # share of the largest eigenvalue: a direction with less information has none
+_BLIND = 1e-10  # share of the largest eigenvalue: a direction with less counts as undetermined
 
 
 def central_jacobian(function: Callable[[Array], Array], x: Array) -> Array:
@@ -22,10 +22,10 @@ def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequenc
     """Half widths (p,) of 95 % intervals and the correlation (p, p) of a weighted least-squares estimate.
 
     residual (n,) is whitened, jacobian (n, p), weight (n,) the robust weights, groups (n,) the run of each residual,
-    empty for what is no measurement but was known before.
-    Infinite half widths, and NaN for correlations, belong to parameters that the residuals do not distinguish.
-    The wider of two: independent errors of the residuals' own size (at least 1), and errors that are alike within a
-    run (jackknife over runs, Bell and McCaffrey 2002, with Student's t over the runs), from six runs on.
+    empty for a prior.
+    Parameters that the residuals do not distinguish have infinite half widths and NaN correlations.
+    The wider of two intervals: by independent errors of the residuals' own size (at least 1), and, from six runs on, by
+    errors correlated within a run (jackknife over runs, Bell and McCaffrey 2002, with Student's t over the runs).
     """
     freedom = max(len(residual) - jacobian.shape[1], 1)
     variance = max(float(np.sum(weight * residual**2) / freedom), 1.0)
@@ -40,7 +40,7 @@ def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequenc
 
 
 def _jackknife(jacobian: Array, weight: Array, residual: Array, labels: NDArray[np.str_]) -> tuple[Array, int]:
-    """Deviations (p,) by leaving out one group after the other in the linearised problem, and how many there are."""
+    """Deviations (p,) by leaving out one group after the other in the linearised problem, and the number of groups."""
     names = sorted(set(labels.tolist()) - {""})
     normal, shifts = jacobian.T @ (weight[:, None] * jacobian), []
     for name in names:
@@ -53,7 +53,7 @@ def _jackknife(jacobian: Array, weight: Array, residual: Array, labels: NDArray[
 
 
 def _inverse(normal: Array, whole: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Inverse (p, p) within what the data see, and whether they see each parameter (p,) or only sums with others.
+    """Inverse (p, p) in determined directions, and whether each parameter (p,) is determined by itself.
 
     `whole` is the normal matrix of all data, which gives the scale.
     """

@@ -1,4 +1,4 @@
-"""One static map for each direction of motion, side by side: seals need not rub alike both ways."""
+"""One static map for each direction of motion: seals may rub differently in the two directions."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,11 +11,11 @@ DIRECTIONS = {"extending": 1, "retracting": -1}
 
 
 def by_direction(found: Identification, free: Sequence[str]) -> dict[str, Any]:
-    """Fits of the `free` friction parameters to the points and breakaways of either direction, and where they differ.
+    """Fits of the `free` friction parameters to the points and breakaways of each direction, and their differences.
 
     Returns plain data: for each direction `points`, `breakaways`, `parameters` (name: value, low, high, unit) and
-    `undetermined` (name: sentence); `compared` are the parameters known in both, `differ` those of them whose 95 %
-    intervals do not touch. A direction without enough points has a `problem`, a sentence.
+    `undetermined` (name: sentence); `compared` are the parameters determined in both, `differ` those whose 95 %
+    intervals do not overlap. A direction without enough points has a `problem`, a sentence.
     """
     sides: dict[str, Any] = {name: _side(found, sign, free) for name, sign in DIRECTIONS.items()}
     first, second = (side["parameters"] for side in sides.values())

@@ -15,15 +15,15 @@ Array = NDArray[np.float64]
 
 COEFFICIENTS = ("arctan_flow.filling_coefficient", "arctan_flow.exhaust_coefficient")
 LIMITS = ("dead_zone.right_limit", "dead_zone.left_limit")
-_RELATIVE = 1e-4  # of a flow: what steadiness leaves of a window's mass balance at best
-_KNOWN = 0.05  # relative deviation of what was known before of the dead zone's limits: runs of one voltage do not show
+_RELATIVE = 1e-4  # of a flow: least error of a window's mass balance, as no motion is exactly steady
+_KNOWN = 0.05  # relative prior deviation of the dead zone's limits, which runs of one voltage do not determine
 _LOOSE = 0.2  # relative half width of an interval beyond which a coefficient counts as not determined
 _F_SCALE = 3.0  # deviations: beyond, residuals count linearly
 
 
 @dataclass(frozen=True)
 class FlowFit:
-    """Fitted valve parameters and 95 % intervals by dotted name, and sentences for what the data do not determine."""
+    """Fitted valve parameters and 95 % intervals by dotted name, and a sentence for each undetermined parameter."""
 
     values: dict[str, float]
     intervals: dict[str, tuple[float, float]]
@@ -44,7 +44,7 @@ def measured_flow(model: Model, window: Window) -> tuple[float, float]:
 
 
 def flow_noise(model: Model, window: Window) -> tuple[float, float]:
-    """Deviation of `measured_flow` by sensor noise [kg/s]: that of V p' / (gamma R T), which outweighs the others."""
+    """Deviation of `measured_flow` by sensor noise [kg/s]: that of V p' / (gamma R T), the dominant term."""
     per_volume = window.slope_noise / (
         model["air.heat_capacity_ratio"] * model["air.gas_constant"] * model["air.temperature"]
     )
@@ -70,7 +70,7 @@ def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
 
 
 class _FlowProblem:
-    """Least squares over factors of the parameters `names`, with what was known of the dead zone's limits."""
+    """Least squares over factors of the parameters `names`, with priors of the dead zone's limits."""
 
     def __init__(self, model: Model, used: Sequence[Window], names: tuple[str, ...]) -> None:
         self.model, self.names = model, names
@@ -85,7 +85,7 @@ class _FlowProblem:
         self.groups = [*(w.run for w in used for _ in "ab"), *("" for _ in range(int(self.known.sum())))]
 
     def residuals(self, x: Array) -> Array:
-        """Whitened: model minus measured flow into a and b of every window, then the limits about what was known."""
+        """Whitened: model minus measured flow into a and b of every window, then the limits about their priors."""
         values = dict(zip(self.names, (x * self.scale).tolist(), strict=True))
         seen = self.model.with_parameters(values).outputs(self.states, self.held)
         claimed = np.stack([seen["port_flow_a"], seen["port_flow_b"]], axis=1)
@@ -93,11 +93,11 @@ class _FlowProblem:
         return np.concatenate([flows, (x - 1.0)[self.known] / _KNOWN])
 
     def result(self, x: Array) -> FlowFit:
-        """Values and intervals at the solution x; limits that gained little on what was known are undetermined."""
+        """Values and intervals at the solution x; limits hardly better known than by their priors are undetermined."""
         residual = self.residuals(x)
         weight = 1.0 / (1.0 + (residual / _F_SCALE) ** 2)
         half, correlation = half_widths(residual, central_jacobian(self.residuals, x), weight, self.groups)
-        loose = half > np.where(self.known, _KNOWN, _LOOSE * x)  # of a limit: half of what 95 % was before
+        loose = half > np.where(self.known, _KNOWN, _LOOSE * x)  # of a limit: half its prior 95 % interval
         values = dict(zip(self.names, (x * self.scale).tolist(), strict=True))
         unknown = {name: self._reason(name) for name, bad in zip(self.names, loose, strict=True) if bad}
         kept = {name: value for name, value in values.items() if name not in unknown}
@@ -112,4 +112,4 @@ class _FlowProblem:
             if not (sign * self.held > 0.0).any():
                 return f"needs runs at {side} voltages"
             return f"needs runs at several small {side} voltages, the smallest just beyond the dead zone"
-        return "needs runs at more voltages, fast ones among them"
+        return "needs runs at more voltages, including fast runs"

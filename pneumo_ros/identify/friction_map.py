@@ -17,10 +17,10 @@ Array = NDArray[np.float64]
 
 STARTS = 8
 F_SCALE = 3.0  # deviations: beyond, residuals count linearly
-SLOW = 3.0  # Stribeck velocities: slower points say something of the Stribeck curve
+SLOW = 3.0  # Stribeck velocities: slower points show the Stribeck curve
 LOOSE = 0.2  # relative half width of an interval beyond which a parameter counts as not determined
-SPAN = 1.5  # fastest over slowest point, below which Coulomb friction and what grows with speed are not distinguished
-_WEAK = 0.5  # relative deviation of what was known before of a parameter that the data do not touch
+SPAN = 1.5  # fastest over slowest point, below which Coulomb and speed-dependent friction are not distinguished
+_WEAK = 0.5  # relative prior deviation of a parameter that the data do not determine
 _STRIBECK = ("lugre_friction.stribeck_velocity", "stribeck_shape.exponent")
 
 
@@ -28,7 +28,7 @@ def fit_map(model: Model, points: Sequence[MapPoint], breakaways: Sequence[Break
     """Fit `free` parameters (dotted names) to the map and the breakaway forces by robust least squares.
 
     Bounds are those of the parameters; the best of 8 starts is taken. Intervals are Student's at 95 %, from the
-    Jacobian with the residuals' own spread. What the data cannot determine is left as it was, with a sentence; its
+    Jacobian with the residuals' own spread. An undetermined parameter keeps its value, with a sentence; its
     uncertainty widens the intervals of the others. Raises DataError when there are fewer points than parameters to fit.
     """
     unknown = _unseen(model, points, breakaways, free)
@@ -45,7 +45,7 @@ def fit_map(model: Model, points: Sequence[MapPoint], breakaways: Sequence[Break
 def _unseen(
     model: Model, points: Sequence[MapPoint], breakaways: Sequence[Breakaway], free: Sequence[str]
 ) -> dict[str, str]:
-    """Parameters the data do not touch at all, each with a sentence."""
+    """Parameters that the data cannot determine at all, each with a sentence."""
     speeds = np.array([abs(p.velocity) for p in points])
     slow = model["lugre_friction.stribeck_velocity"] * SLOW
     few = int(np.sum(speeds < slow))
@@ -58,13 +58,13 @@ def _unseen(
             unknown["lugre_friction.static_friction"] = f"{text}, and no breakaway from rest was recorded"
     if len(speeds) and speeds.max() < SPAN * speeds.min():
         span = f"{1e3 * speeds.min():.0f} to {1e3 * speeds.max():.0f} mm/s"
-        text = f"needs speeds over a factor of {SPAN:g}; these span {span}"
+        text = f"needs speeds over a factor of {SPAN:g}; the speeds here span {span}"
         unknown |= {name: text for name in free if name.endswith((".coefficient", ".difference"))}
     return {name: text for name, text in unknown.items() if name in free}
 
 
 class _MapProblem:
-    """Scaled least squares over `free`, while `held` stay as they are, known to `_WEAK` of their size."""
+    """Scaled least squares over `free`; `held` keep their values, known to `_WEAK` of their size."""
 
     def __init__(
         self, model: Model, points: Sequence[MapPoint], breakaways: Sequence[Breakaway], free: tuple[str, ...],
@@ -96,7 +96,7 @@ class _MapProblem:
         return np.concatenate([x, self.first[len(x) :]])
 
     def residuals(self, x: Array) -> Array:
-        """Whitened, of scaled values of the first names or of all: the map first, then the breakaways."""
+        """Whitened residuals for scaled values of the free or of all parameters: the map, then the breakaways."""
         values = dict(zip(self.names, (self._full(x) * self.scale).tolist(), strict=True))
         model = self.model.with_parameters(values)
         sliding = (sliding_friction(model, self.velocity) - self.force) / self.spread
@@ -104,11 +104,11 @@ class _MapProblem:
         return np.concatenate([sliding, breaking])
 
     def solutions(self) -> list[Any]:
-        """Local solutions from several starts, always the same ones."""
+        """Local solutions from several starts, the same in every call."""
         rng = np.random.default_rng(0)
         first, low, high = (every[: len(self.free)] for every in (self.first, self.low, self.high))
         spread = np.exp(rng.normal(0.0, 0.4, (STARTS, len(first))))
-        around = np.where(first == 0.0, 1.0, first)  # of an added effect: its usual size
+        around = np.where(first == 0.0, 1.0, first)  # for an added effect: its usual size
         starts = np.clip(np.vstack([first, around * spread[1:]]), low + 1e-9, high - 1e-9)
         return [
             least_squares(
@@ -121,7 +121,7 @@ class _MapProblem:
         """Intervals, correlation and residuals at the solution x."""
         residual = self.residuals(x)
         half, correlation = self._confidence(x, residual)
-        x = np.where(x - self.low[: len(x)] < 1e-9, self.low[: len(x)], x)  # on its bound, to the last digits
+        x = np.where(x - self.low[: len(x)] < 1e-9, self.low[: len(x)], x)  # exactly on its bound
         values = {name: self.model[name] for name in self.names}
         intervals = {}
         for name, value, h in zip(self.free, (x * self.scale[: len(x)]).tolist(), half.tolist(), strict=True):
@@ -135,15 +135,15 @@ class _MapProblem:
         return MapFit(values, intervals, correlation, self.free, whitened * self.spread, self.spread, ratio, unknown)
 
     def _least(self, name: str) -> float:
-        """Size below which an added effect's parameter counts as small: zero is a value it may well have."""
+        """Size below which an added effect's parameter counts as small, as it may be zero."""
         return (
             0.0 if name.startswith(("lugre_friction.", "quadratic_drag.")) else self.model.specification(name).default
         )
 
     def _confidence(self, x: Array, residual: Array) -> tuple[Array, Array]:
-        """Half widths (free,) and correlation, with what an error of the held parameters would do (Schmidt 1966)."""
+        """Half widths (free,) and correlation, including errors of the held parameters (Schmidt 1966)."""
         full = self._full(x)
-        room = 2e-5 * np.maximum(np.abs(full), 1e-3)  # for the differences, where a value lies on its bound
+        room = 2e-5 * np.maximum(np.abs(full), 1e-3)  # for the differences at a bound
         jacobian = central_jacobian(self.residuals, np.clip(full, self.low + room, self.high - room))
         weight = 1.0 / (1.0 + (residual / F_SCALE) ** 2)
         mine, others = jacobian[:, : len(x)], jacobian[:, len(x) :]

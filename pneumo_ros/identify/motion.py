@@ -1,4 +1,4 @@
-"""Friction from how a piston moves off: static friction and Stribeck velocity, which no steady motion shows well."""
+"""Static friction and Stribeck velocity, which steady motion shows poorly, from the motion after breakaways."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ Index = NDArray[np.int64]
 
 BEFORE_BREAKAWAY, AFTER_BREAKAWAY = 0.7, 0.3  # s around a breakaway
 RAMP = 15.0  # N/s: under a slower ramp the moment of breakaway depends on hundredths of a newton
-FEWEST_BREAKAWAYS, MOST_BREAKAWAYS = 4, 20  # breakaways: fewer say too little, more say nothing new
-_SURE, _KNOWN = 0.01, 0.05  # relative deviations of valve parameters, identified or as given
+FEWEST_BREAKAWAYS, MOST_BREAKAWAYS = 4, 20  # breakaways: fewer are not enough, more add no information
+_SURE, _KNOWN = 0.01, 0.05  # relative prior deviations of valve parameters, identified or as given
 
 
 @dataclass(frozen=True)
 class MotionFit:
-    """What the motion after breakaways determines: estimates by dotted name, their correlation, how many there were."""
+    """Estimates from the motion after breakaways by dotted name, their correlation, and the number of breakaways."""
 
     estimates: dict[str, Estimate]
     correlation: Array  # (names, names)
@@ -44,8 +44,8 @@ def fit_motion(
 ) -> MotionFit | None:
     """Refit the friction parameters `free` (prior deviation by dotted name) to a second around each breakaway.
 
-    Valve and bristles move along within a per cent where they are `sure`, else within five. None when fewer than four
-    pistons broke away under a force that rises fast enough, or nothing is free.
+    Valve and bristle parameters are free too, with a prior of 1 % where they are `sure`, else 5 %. None when there are
+    fewer than four breakaways under a fast enough force, or no free parameter.
     """
     chosen = _one_rate(runs, breakaways)
     starts = _thinned([_starts(run, breakaways) for run in chosen])
@@ -75,7 +75,7 @@ def _starts(run: Run, breakaways: Sequence[Breakaway]) -> Index:
 
 
 def _one_rate(runs: Sequence[Run], breakaways: Sequence[Breakaway]) -> list[Run]:
-    """The runs of that sample time which has most breakaways: segments are simulated side by side."""
+    """The runs of the sample time with most breakaways, as segments simulated together need one sample time."""
     alike: list[list[Run]] = []
     for run in runs:
         group = next((g for g in alike if abs(run.sample_time / g[0].sample_time - 1.0) < 1e-3), None)
@@ -86,7 +86,7 @@ def _one_rate(runs: Sequence[Run], breakaways: Sequence[Breakaway]) -> list[Run]
 
 
 def _thinned(starts: Sequence[Index]) -> list[Index]:
-    """At most `MOST_BREAKAWAYS` of all, spread evenly."""
+    """At most `MOST_BREAKAWAYS` of all starts, spread evenly."""
     total = sum(len(s) for s in starts)
     kept = np.unique(np.linspace(0, total - 1, min(total, MOST_BREAKAWAYS)).round().astype(int))
     bounds = np.cumsum([0, *(len(s) for s in starts)])

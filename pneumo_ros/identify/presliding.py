@@ -15,12 +15,12 @@ Array = NDArray[np.float64]
 STIFFNESS, DAMPING = "lugre_friction.bristle_stiffness", "lugre_friction.bristle_damping"
 _ELASTIC = 0.75  # of the breakaway force: below, the contact is purely elastic
 _BLOCK = 0.05  # s
-_DEFLECTION = 50e-6  # m, the upper end of the paper's 1 to 50 micrometres of Eq. 15
+_DEFLECTION = 50e-6  # m, the upper end of the range of 1 to 50 micrometres in Eq. 15
 
 
 @dataclass(frozen=True)
 class Presliding:
-    """Values by dotted name, 95 % intervals where measured, and one sentence each on where they come from."""
+    """Values by dotted name, 95 % intervals where measured, and one sentence each on their source."""
 
     values: dict[str, float]
     intervals: dict[str, tuple[float, float]]
@@ -38,11 +38,11 @@ def fit_presliding(model: Model, runs: Sequence[Run], breakaways: Sequence[Break
     else:
         values[STIFFNESS] = model["lugre_friction.coulomb_friction"] / _DEFLECTION
         remarks[STIFFNESS] = (
-            "not measured, no presliding shows above the noise; by Eq. 15 F_c / 50 um, the softest it allows"
+            "not measured, as no presliding exceeds the noise; F_c / 50 um, the softest bristle that Eq. 15 allows"
         )
     bound = passive_damping(model)
     values[DAMPING] = min(model[DAMPING], bound)
-    kept = "kept as it was" if values[DAMPING] == model[DAMPING] else "lowered to it"
+    kept = "kept as it was" if values[DAMPING] == model[DAMPING] else "lowered to the passive limit"
     remarks[DAMPING] = f"not measured, {kept}; passive up to {bound:.0f} N s/m (Eq. 16 corrected for quadratic drag)"
     return Presliding(values, intervals, remarks)
 
@@ -56,7 +56,7 @@ def passive_damping(model: Model) -> float:
 
 
 def _compliances(model: Model, run: Run, breakaways: Sequence[Breakaway]) -> list[tuple[float, float]]:
-    """Deflection over force [m/N] and its deviation before each breakaway of a run that shows it."""
+    """Compliance [m/N] and its deviation before each breakaway of a run that shows it."""
     if not breakaways:
         return []
     force, noise = holding_force(model, run), run.noise["position_m"]
@@ -65,7 +65,7 @@ def _compliances(model: Model, run: Run, breakaways: Sequence[Breakaway]) -> lis
 
 
 def _compliance(run: Run, force: Array, noise: float, breakaway: Breakaway) -> tuple[float, float] | None:
-    """Compliance [m/N] and its deviation while the force rose from rest, None when it hardly did."""
+    """Compliance [m/N] and its deviation while the force rose from rest; None if it rose too little."""
     begin = breakaway.index - round(breakaway.rest / run.sample_time)
     rows = np.arange(max(begin, 0), breakaway.index)
     rows = rows[np.abs(force[rows]) < _ELASTIC * breakaway.force]

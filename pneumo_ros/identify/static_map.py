@@ -25,9 +25,9 @@ class MapPoint:
 
 @dataclass(frozen=True)
 class MapFit:
-    """Fitted parameters by dotted name, 95 % intervals, correlation, residuals [N] of the points, and what is unknown.
+    """Fitted parameters by dotted name, 95 % intervals, correlation, and residuals [N] of the points.
 
-    undetermined: parameter -> a plain sentence; such a parameter keeps the value it had, and has no interval.
+    undetermined: parameter -> a sentence; an undetermined parameter keeps its old value, and has no interval.
     """
 
     values: dict[str, float]

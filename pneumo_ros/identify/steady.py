@@ -1,4 +1,4 @@
-"""Stretches of constant velocity and constant pressures, found without knowing where they are."""
+"""Detection of stretches of constant velocity and constant pressures."""
 
 import itertools
 from collections.abc import Callable
@@ -14,15 +14,15 @@ from pneumo_ros.runs.run import Run
 Array = NDArray[np.float64]
 
 WINDOW = 0.25  # s
-TRAVEL = 5e-4  # m: ten times the bristles' deflection, so that friction has forgotten where the motion began
-SPEED_CHANGE = 0.015  # of the speed, within a window: more, and its curvature would bias the velocity
-FORCE_CHANGE = 0.01  # of the driving force, within a window: the pressures are constant enough
+TRAVEL = 5e-4  # m: ten times the bristles' deflection, so that friction does not depend on the start of the motion
+SPEED_CHANGE = 0.015  # of the speed, within a window: a larger change would bias the velocity
+FORCE_CHANGE = 0.01  # of the drive force, within a window: with less the pressures count as constant
 _EDGE = 2e-3  # m from the end of the stroke
 
 
 @dataclass(frozen=True)
 class Window:
-    """One window of constant input: least-squares velocity, acceleration, mean pressures; used, or refused and why."""
+    """One window of constant input: least-squares velocity, acceleration, mean pressures; used, or the refusal."""
 
     run: str
     start: float  # [s]
@@ -39,7 +39,7 @@ class Window:
     friction_noise: float  # [N], standard deviation by sensor noise
     velocity_noise: float  # [m/s], likewise
     slope_noise: float  # [Pa/s], likewise, of either chamber; NaN when force-driven
-    reason: str  # why it is refused, the same words for every window refused for it; empty when used
+    reason: str  # why it is refused, in the same words for every such window; empty when used
     refused: str  # the same with its figures
 
     @property
@@ -99,7 +99,7 @@ def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
     if signal is None:
         return np.full((2, len(rows)), np.nan)
     # A least-squares slope of position is the velocity's mean under a parabola; pressures are averaged likewise, so
-    # that what changes during a window does not bias the force against the velocity.
+    # that changes during a window do not bias the force against the velocity.
     weight = 1.0 - (time / (time[-1] + time[1] - time[0])) ** 2
     mean = signal[rows] @ weight / weight.sum()
     return np.stack([mean, np.polynomial.polynomial.polyfit(time, signal[rows].T, 1)[1]])
@@ -108,7 +108,7 @@ def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
 def _forces(
     model: Model, position: Array, velocity: Array, a: Array, b: Array, held: Array
 ) -> tuple[Array, Array, Array]:
-    """Drive and load force [N] at each window's mean, and how fast the drive changes [N/s]."""
+    """Drive and load force [N] at each window's mean, and the rate of change of the drive force [N/s]."""
     states = np.tile(model.state(), (len(position), 1))
     states[:, 0], states[:, 1] = position, velocity
     swing = np.zeros(len(position))
@@ -135,7 +135,7 @@ def _reasons(
     model: Model, run: Run, rows: NDArray[np.int64], position: Array, velocity: Array, speed_change: Array,
     force_change: Array, force: Array,
 ) -> list[tuple[str, str]]:  # fmt: skip
-    """Reason, and reason with figures, of each window; empty for those to be used."""
+    """Reason, and reason with figures, of each window; empty for used windows."""
     span = (rows.shape[1] - 1) * run.sample_time
     speed, edge = np.abs(velocity), 0.5 * model["piston.stroke"] - _EDGE
     tests: tuple[tuple[str, Any, Callable[[int], str]], ...] = (

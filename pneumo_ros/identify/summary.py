@@ -1,4 +1,4 @@
-"""An identification as plain data: the JSON of `pneumo identify`, from which text, report and node speak."""
+"""An identification as plain data: the JSON of `pneumo identify`, the source of text, report and node."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -12,14 +12,14 @@ from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.identify.steady import WINDOW, Window
 from pneumo_ros.runs.run import Run
 
-STRONG = 0.9  # correlation beyond which two parameters are said to be known together rather than one by one
-MISFIT = 3.0  # residuals over noise beyond which noise does not explain them
-REPEATS = 0.01  # of the median force: rigs repeat their friction that well, though seldom to the noise of the sensors
+STRONG = 0.9  # correlation above which two parameters are reported as determined only together
+MISFIT = 3.0  # residuals over noise above which noise does not explain them
+REPEATS = 0.01  # of the median force: repeatability of a rig's friction, seldom as good as the sensor noise
 _CURVE = 60  # points of the drawn curve in each direction
 
 
 def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
-    """Everything found in the `runs`, with the evidence; SI units. NaN stands for what there is not."""
+    """All results from the `runs`, with the evidence; SI units. Missing values are NaN."""
     return {
         "schema_version": 1,
         "model": found.model.name,
@@ -45,7 +45,7 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
 
 
 def _fit_quality(found: Identification) -> dict[str, Any]:
-    """How far the points are from the fitted curve."""
+    """Distance of the points from the fitted curve."""
     rms = float(np.sqrt(np.mean(found.map_fit.residuals**2)))
     share = rms / float(np.median([abs(p.force) for p in found.points]))
     ratio = found.map_fit.ratio
@@ -76,7 +76,7 @@ def _points(found: Identification) -> dict[str, list[Any]]:
 
 
 def _curve(found: Identification) -> dict[str, list[float]]:
-    """Friction at constant velocity, of the identified model and of the one before; NaN at rest breaks the curves."""
+    """Friction at constant velocity, of the identified and the original model; NaN at rest breaks the curves."""
     velocity = np.array([p.velocity for p in found.points])
     slowest = 0.1 * min(model["lugre_friction.stribeck_velocity"] for model in (found.model, found.before))
     reach = [1.05 * max(side.max(initial=0.0), 2.0 * slowest) for side in (-velocity, velocity)]
@@ -91,7 +91,7 @@ def _curve(found: Identification) -> dict[str, list[float]]:
 
 
 def _run(run: Run, windows: Sequence[Window]) -> dict[str, Any]:
-    """What became of one run: its used stretches, and how many windows were refused for what."""
+    """The use of one run: its used stretches, and the number of refused windows by reason."""
     return {
         "name": run.name, "duration_s": float(run.time[-1]), "sample_time_s": run.sample_time,
         "windows": len(windows), "used": sum(w.used for w in windows),

@@ -1,4 +1,4 @@
-"""Where a refit of all segments begins: near its end, found with a few of them."""
+"""The starting point for a refit of all segments: near the optimum, found with a few segments."""
 
 from dataclasses import dataclass, replace
 
@@ -15,12 +15,12 @@ from pneumo_ros.shooting.start import fit_starts
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_FEW = 40  # segments: enough to come near
+_FEW = 40  # segments: enough for a start near the optimum
 
 
 @dataclass(frozen=True)
 class Near:
-    """Where the fit of all segments begins; `fresh`: starts fitted from guesses made with these parameters."""
+    """The starting point for the fit of all segments; `fresh`: starts were fitted from guesses by these parameters."""
 
     unknowns: Unknowns
     segments: Segments
@@ -32,10 +32,10 @@ def approach(
     model: Model, unknowns: Unknowns, segments: Segments, chosen: Index, start: Refit | None, threads: int,
     progress: Progress,
 ) -> Near:  # fmt: skip
-    """Come near with a few segments.
+    """Find a start near the optimum with a few segments.
 
-    An earlier refit bent parameters to make up for what its model lacked, sometimes beyond return: the descent is tried
-    from there and from what was known at first, and the better one counts.
+    An earlier refit may have biased parameters to compensate a missing effect, sometimes too far to recover. So the
+    descent is tried both from its result and from the prior values, and the better result is used.
     """
     few = np.unique(np.linspace(0, len(segments) - 1, min(len(segments), _FEW)).round().astype(np.int64))
     part, found = segments.pick(few), []
@@ -60,9 +60,9 @@ def _begun(unknowns: Unknowns, earlier: Refit | None) -> Unknowns:
 
 
 def _warm(model: Model, segments: Segments, chosen: Index, start: Refit) -> Array:
-    """Starts (segments, states) as an earlier refit left them, fitted where it had none.
+    """Starts (segments, states) from an earlier refit, fitted where it had none.
 
-    States that its model lacked begin as guessed, and sensors read there what they read before.
+    States that its model lacked start at their guesses, and sensor readings stay as they were.
     """
     before = start.model
     known = np.isin(chosen, start.chosen)

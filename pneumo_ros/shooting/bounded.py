@@ -1,8 +1,8 @@
-"""The step of least squares within bounds, which every Gauss-Newton descent with bounds takes.
+"""The least-squares step within bounds, used by every Gauss-Newton descent with bounds.
 
-Four descents stay apart, as they are truly different; each says how it stops. `diagnose.basefit` and
+There are four separate descents, as their problems differ; each says how it stops. `diagnose.basefit` and
 `experiment.imitation` fit one model by dense slopes and take the best of a few shares of this step.
-`diagnose.refining` moves many candidates side by side, each at its own pace. `shooting` has starts to eliminate and
+`diagnose.refining` moves many candidates at once, each with its own step control. `shooting` eliminates the starts and
 damps the step, and `shooting.start` solves many small problems without bounds at once.
 """
 
@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 def bounded_minimum(normal: Array, gradient: Array, low: Array, high: Array) -> Array:
     """x (p,) within low and high (p,) that minimises x normal x / 2 + gradient x; normal (p, p) positive definite.
 
-    Cutting the free minimum off at a bound would leave what trades with that entry where it does not belong. Raises
-    NumericalError where the matrix is not finite, or its entries differ too much in size.
+    Clipping the free minimum at a bound would leave correlated entries at wrong values. Raises NumericalError where the
+    matrix is not finite, or its entries differ too much in magnitude.
     """
     root = finite(np.linalg.cholesky, normal).T
     wanted = -np.linalg.solve(root.T, gradient)

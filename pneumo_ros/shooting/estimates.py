@@ -1,4 +1,4 @@
-"""What a fit says about its parameters: values, deviations, correlation."""
+"""Estimates of the parameters of a fit: values, deviations, correlation."""
 
 from dataclasses import dataclass
 
@@ -29,16 +29,16 @@ class Estimate:
 
     @property
     def determined(self) -> bool:
-        """Whether the data say more than was known before: the deviation is below half the prior's."""
+        """Whether the data determine the parameter: its deviation is below half the prior's."""
         return self.std < 0.5 * self.prior
 
 
 @dataclass(frozen=True)
 class Refit:
-    """The refitted model, an estimate per free parameter, their correlation, and the course of the cost.
+    """The refitted model, an estimate per free parameter, their correlation, and the cost by iteration.
 
-    `starts` (segments, states) are the fitted initial states of the segments that were used, `chosen` (segments,) which
-    of all they are; another refit may begin with them.
+    `starts` (segments, states) are the fitted initial states of the used segments, `chosen` (segments,) their indices
+    among all segments; another refit may start from them.
     """
 
     model: Model
@@ -55,16 +55,16 @@ def estimates(unknowns: Unknowns, solution: Solution) -> tuple[dict[str, Estimat
     """Estimates by name and correlation (free, free), from a bootstrap over segments of the linearised problem."""
     active, theta, prior = solution.active, solution.theta, unknowns.prior
     matrices, gradients = solution.equations.matrix[active], solution.equations.gradient[active]
-    # what the next step would take away is no scatter; segments that determine nothing keep a gradient of zero
+    # gradients that the next step would remove are no scatter; segments without information keep a gradient of zero
     rest = np.linalg.lstsq(matrices.sum(0), gradients.sum(0), rcond=1e-12)[0]
     shifts = _bootstrap(matrices, gradients - matrices @ rest)
-    # what only the prior determines does not change when segments are drawn again: its own deviation counts there
+    # a parameter that only the prior determines does not vary between resamples: its posterior deviation counts
     posterior = np.sqrt(np.diag(np.linalg.inv(matrices.sum(0) + np.eye(len(theta)))))
-    drawn = np.minimum(shifts.std(0) * _small_sample(len(matrices)), 1.0)  # no data make known less than was known
+    drawn = np.minimum(shifts.std(0) * _small_sample(len(matrices)), 1.0)  # data never increase the prior's deviation
     deviation = np.maximum(drawn, posterior) * prior
     covariance = np.atleast_2d(np.cov(shifts.T))
     scale = np.where(np.diag(covariance) > 0.0, np.sqrt(np.diag(covariance)), np.nan)
-    # a direction that only the prior holds is not determined by the data
+    # a parameter that only the prior determines is not determined by the data
     information = np.diag(np.linalg.inv(matrices.sum(0) + 1e-9 * np.eye(len(theta))))
     deviation = np.where(information > 1e6, np.inf, deviation)
     found = {
@@ -75,7 +75,7 @@ def estimates(unknowns: Unknowns, solution: Solution) -> tuple[dict[str, Estimat
 
 
 def _small_sample(segments: int) -> float:
-    """How much wider Student's interval over few segments is than the normal one of their resampling."""
+    """Ratio of Student's interval for few segments to the normal interval of their resampling."""
     freedom = max(segments - 1, 1)
     return float(student.ppf(0.975, freedom) / 1.96 * np.sqrt(segments / freedom))
 

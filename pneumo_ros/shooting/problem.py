@@ -1,4 +1,4 @@
-"""The least squares of multiple shooting: residuals of all segments, their linearisation and the step it asks for."""
+"""The least squares of multiple shooting: residuals of all segments, their linearisation and the step from it."""
 
 from dataclasses import dataclass
 
@@ -11,14 +11,14 @@ from pneumo_ros.shooting.segments import PROBE, Segments
 
 Array = NDArray[np.float64]
 
-NOISE_TAIL = 4.0  # noise deviations: beyond, errors count less than squared
-_BENT = 5e-3  # share of what noise does not explain: gain worth a step of a model that lacks something
-_LANES = 1024  # at once: more take memory, not time
+NOISE_TAIL = 4.0  # noise deviations: beyond, the loss of an error is linear
+_BENT = 5e-3  # share of the cost beyond noise: least gain for a further step of a model that lacks an effect
+_LANES = 1024  # lanes at once: more need memory and save no time
 
 
 @dataclass(frozen=True)
 class Unknowns:
-    """What is fitted: free parameters by name with the values (free,) they begin at, priors about `centre`, bounds."""
+    """The unknowns of a fit: free parameters by name, initial values (free,), priors about `centre`, bounds."""
 
     names: tuple[str, ...]
     begin: Array
@@ -57,15 +57,15 @@ class Problem:
         self.tail = np.append(np.full(count, NOISE_TAIL), np.full(n, np.inf))  # distances from guesses count squared
 
     def begin_cost(self, states: Array) -> float:
-        """Cost at the parameters begun with."""
+        """Cost at the initial parameters."""
         return self.total(self.residuals(states, self.unknowns.begin), self.unknowns.begin)
 
     def with_values(self, theta: Array) -> Model:
-        """The model with values (free,) of what is fitted."""
+        """The model with values (free,) of the free parameters."""
         return self.model.with_parameters(dict(zip(self.unknowns.names, theta.tolist(), strict=True)))
 
     def slack(self, cost: float) -> float:
-        """Gain in cost not worth a step where a model lacks something: its valley is rough and has no sharp end."""
+        """Gain in cost too small for a step where a model lacks an effect: its cost is rough near the minimum."""
         noise = 0.5 * float(np.sum(self.segments.weight[self.active] > 0.0))
         return _BENT * max(cost - 1.1 * noise, 0.0)
 
@@ -92,7 +92,7 @@ class Problem:
         return np.asarray(np.sum(huber_loss(residuals, self.tail), axis=1))
 
     def total(self, residuals: Array, theta: Array) -> float:
-        """Cost: losses of the segments that count, and what the priors say of the parameters."""
+        """Cost: losses of the active segments, and of the parameters by their priors."""
         moved = (theta - self.unknowns.centre) / self.unknowns.prior
         return float(np.sum(self.losses(residuals)[self.active]) + 0.5 * np.sum(moved**2))
 
@@ -116,11 +116,11 @@ class Problem:
         return jacobian
 
     def equations(self, states: Array, theta: Array, residuals: Array) -> Equations:
-        """Linearised at starts and parameters, weighted as the residuals there deserve."""
+        """Linearised at starts and parameters, with robust weights by the residuals there."""
         n, active = states.shape[1], self.active[:, None]
         jacobian = self.jacobian(states, theta)
         weight = huber_weight(residuals, self.tail)
-        weight[:, :-n] *= active  # starts of segments left out go where they were guessed
+        weight[:, :-n] *= active  # starts of segments left out go to their guesses
         jacobian[:, n:] *= active[..., None]
         weighted = jacobian * weight[:, None]
         normal = weighted @ np.swapaxes(jacobian, 1, 2)
@@ -135,14 +135,14 @@ class Problem:
         )  # fmt: skip
 
     def promise(self, theta: Array, equations: Equations) -> float:
-        """Gain in cost that the linearisation promises of the next step (half the Newton decrement)."""
+        """Gain in cost of the next step by the linearisation (half the Newton decrement)."""
         slope = equations.gradient.sum(0) + (theta - self.unknowns.centre) / self.unknowns.prior
         return float(-0.5 * slope @ self.move(theta, equations, 0.0))
 
     def move(self, theta: Array, equations: Equations, damping: float) -> Array:
-        """Damped step (free,) in priors, at most one of them each, that ends within the bounds.
+        """Damped step (free,) in priors, at most 1 for each parameter, within the bounds.
 
-        What would go farther is put there, and the others are solved for again.
+        A parameter that would go beyond its limit is held there, and the others are solved for again.
         """
         u = self.unknowns
         total = equations.matrix.sum(0) + np.eye(len(theta))
@@ -150,7 +150,7 @@ class Problem:
         total += damping * np.diag(np.diag(total))
         low, high = np.maximum((u.low - theta) / u.prior, -1.0), np.minimum((u.high - theta) / u.prior, 1.0)
         move, held = np.zeros(len(theta)), np.zeros(len(theta), dtype=bool)
-        for _ in range(len(theta) + 1):  # each round holds one more at least, the last one has none left to hold
+        for _ in range(len(theta) + 1):  # each round holds at least one more parameter, the last none
             free = ~held
             right = slope[free] + total[np.ix_(free, held)] @ move[held]
             move[free] = -np.linalg.solve(total[np.ix_(free, free)], right)

@@ -2,7 +2,7 @@
 
 Every run is cut into segments whose initial states are free; each segment is simulated from its own start, and all
 starts and all parameters together minimise the whitened, robustly weighted errors (Huber 1964) plus the priors. The few
-segments that fit far worse than the rest, breakaways caught in the wrong moment, are left out. The starts are
+segments that fit far worse than the rest, breakaways predicted at the wrong moment, are left out. The starts are
 eliminated segment by segment (Schur complement), so that the cost grows linearly with the data, and all perturbed
 simulations of one iteration run as lanes.
 """
@@ -26,13 +26,13 @@ __all__ = ["Estimate", "Refit", "default_free", "refit", "refit_segments"]
 SEGMENT = 0.5  # s
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
 
-# What a scale, a ruler or a table determines better than a motion: fixed unless asked for.
+# Parameters that a scale, a ruler or a table determines better than a motion: fixed unless named.
 FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
 FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
 
 
 def default_free(model: Model) -> tuple[str, ...]:
-    """Parameters a refit lets move: all but mass, geometry, gas, end stops and what presliding alone shows."""
+    """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows."""
     return tuple(
         name for name in model.parameters if name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED
     )
@@ -53,9 +53,9 @@ def refit(
     """Refit `free` parameters (default `default_free`) of a model to all runs together.
 
     `priors` maps dotted names to standard deviations in the parameter's unit (default `default_prior`). `segment` [s]
-    is the length of the shooting segments, `share` how many of them are used, evenly drawn. With `start`, an earlier
-    refit to the same runs and `segment`, parameters begin where it ended, and keep the priors they had there unless
-    others are given; a few iterations then show what another effect changes. Raises UsageError for unknown names,
+    is the length of the shooting segments, `share` the share of them that is used, evenly drawn. With `start`, an
+    earlier refit to the same runs and `segment`, parameters start at its result, and keep its priors unless others are
+    given; a few iterations then show the change by another effect. Raises UsageError for unknown names,
     DataError when no run holds a segment, NumericalError when no prediction is finite.
     """
     names = default_free(model) if free is None else tuple(free)
@@ -96,10 +96,10 @@ def refit_segments(
 
 
 def default_prior(model: Model, name: str) -> float:
-    """Standard deviation that a parameter has before any data: 5 % of its value, in the parameter's unit.
+    """Prior standard deviation of a parameter: 5 % of its value, in the parameter's unit.
 
-    Of its default where that is larger, of its usual size where both are 0. Where an effect is switched off, all that
-    would bring it to its usual size.
+    5 % of its default if that is larger, of its usual size if both are 0. For an effect that is switched off, its whole
+    usual size.
     """
     specification, value = model.specification(name), model[name]
     size = max(abs(value), abs(specification.default))
@@ -111,7 +111,7 @@ def default_prior(model: Model, name: str) -> float:
 def unknowns_of(
     model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None
 ) -> Unknowns:
-    """What a refit of the named parameters fits; otherwise as `refit`. UsageError for none, or priors of 0."""
+    """The unknowns of a refit of the named parameters; otherwise as `refit`. UsageError for no name or a prior of 0."""
     known = start.estimates if start else {}
     prior = [priors.get(n, known[n].prior if n in known else default_prior(model, n)) for n in names]
     if not names:

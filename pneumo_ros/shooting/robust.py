@@ -7,7 +7,7 @@ Array = NDArray[np.float64]
 
 
 def huber_loss(errors: Array, tail: float | Array) -> Array:
-    """Half the square of errors in deviations, as far as the tail; linear beyond. `tail` may be infinite."""
+    """Half the square of errors in deviations, up to the tail; linear beyond. `tail` may be infinite."""
     size = np.abs(errors)
     square = np.minimum(size, tail)
     return np.asarray(square * (size - 0.5 * square))

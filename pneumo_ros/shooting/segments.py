@@ -18,17 +18,17 @@ Index = NDArray[np.int64]
 
 PROBE = 1e-2  # scales: step of finite differences
 _COARSE = 2.0 * STEP  # s
-_WRONG = 1e9  # noise deviations: the most an error counts, so that its square stays a number
+_WRONG = 1e9  # noise deviations: limit of an error, so that its square stays finite
 
 
 @dataclass(frozen=True)
 class Segments:
     """Segments of equal length; arrays hold one row per segment.
 
-    first: index of each segment's first entry in `voltage`, the inputs during all segments; start [s]: when voltage[0]
-    would be by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
+    first: index of each segment's first entry in `voltage`, the inputs during all segments; start [s]: time of
+    voltage[0] by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
     1 / noise, or 0 where nothing was measured; guess and scale (segments, states): initial states and their prior
-    deviations; shown (segments, signals): what sensors read at the guess, so as the model then was; columns: the states
+    deviations; shown (segments, signals): sensor readings at the guess by the model that made it; columns: the states
     that the signals show.
     """
 
@@ -43,8 +43,8 @@ class Segments:
     scale: Array
     shown: Array
     columns: tuple[int, ...]
-    run: Index  # which run each segment is from
-    at: Index  # and the grid point there where it begins
+    run: Index  # the run of each segment
+    at: Index  # its first grid point in that run
     runs: tuple[Run, ...]
     parts: int = PARTS  # inputs held one after another in a sample
     step: float = STEP  # s, longest of the integration
@@ -58,7 +58,7 @@ class Segments:
         return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
 
     def guessed(self, model: Model) -> "Segments":
-        """The same with guesses as `model` makes them."""
+        """The same with guesses by `model`."""
         guess, scale = self.guess.copy(), self.scale.copy()
         for number in np.unique(self.run):
             rows = self.run == number
@@ -76,8 +76,8 @@ class Segments:
     def coarser(self) -> "Segments":
         """The same for integration in steps of 0.2 ms, with inputs held as long, where samples are that fine.
 
-        Half the work. Derivatives change by a hundredth, errors by a tenth of the noise and, at breakaways from a stiff
-        bristle, more: differences may be taken between results of either, never across.
+        This halves the work. Derivatives change by 1 %, errors by 10 % of the noise and, at breakaways from a stiff
+        bristle, more. So differences must be taken between results of equal steps.
         """
         if self.sample_time / self.parts > 0.5 * _COARSE * (1.0 + 1e-6) or self.parts % 2:
             return replace(self, step=_COARSE)
@@ -85,10 +85,10 @@ class Segments:
         return replace(self, voltage=pairs, first=self.first // 2, parts=self.parts // 2, step=_COARSE)
 
     def from_guess(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
-        """How far states (copies * segments, states) are from the guesses, in scales: (copies, segments, states).
+        """Distance of states (copies * segments, states) from the guesses, in scales: (copies, segments, states).
 
-        For the measured ones it is the readings that are compared, which do not depend on what the sensors' effects
-        were taken to be when the guess was made.
+        For measured states the readings are compared, which do not depend on the sensor effects of the model that made
+        the guess.
         """
         apart = states.reshape(self._copies(states), *self.guess.shape) - self.guess
         if not model.composition.true_sensors:
@@ -96,9 +96,9 @@ class Segments:
         return np.asarray(apart / self.scale)
 
     def seated(self, model: Model, states: Array | None = None, shown: Array | None = None) -> Array:
-        """States (segments, states), measured ones moved to where sensors show `shown` (segments, signals).
+        """States (segments, states), with measured ones moved so that sensors read `shown` (segments, signals).
 
-        Both are those of the guesses unless given.
+        By default, both are those of the guesses.
         """
         moved: Array = (self.guess if states is None else states).copy()
         for _ in range(0 if model.composition.true_sensors else 3):
@@ -106,7 +106,7 @@ class Segments:
         return moved
 
     def read(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
-        """What sensors read at initial states (copies * segments, states): (copies, segments, signals)."""
+        """Sensor readings at initial states (copies * segments, states): (copies, segments, signals)."""
         copies = self._copies(states)
         read = sense(
             model, states[:, None], parameters, self.voltage, np.tile(self.first, copies),
@@ -127,7 +127,7 @@ class Segments:
         )  # fmt: skip
 
     def residuals(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
-        """Whitened errors (copies, segments, samples * signals); predictions that left the finite count as very wrong.
+        """Whitened errors (copies, segments, samples * signals), limited where predictions are not finite.
 
         states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
         """
@@ -141,7 +141,7 @@ class Segments:
         return error.reshape(*shape[:2], shape[2] * shape[3])
 
     def _predict(self, model: Model, states: Array, parameters: Array | None, threads: int) -> Array:
-        """What sensors read along all lanes (lanes, samples, signals)."""
+        """Sensor readings along all lanes (lanes, samples, signals)."""
         if model.composition.true_sensors:
             return self.simulate(model, states, parameters, threads, self.columns)
         copies = self._copies(states)
@@ -158,7 +158,7 @@ class Segments:
 def cut(model: Model, runs: Sequence[Run], duration: float, rows: Index | None = None) -> Segments:
     """Cut runs into segments of `duration` [s], side by side and without gaps; UsageError when sample times differ.
 
-    `rows`, ascending: only those of the segments.
+    `rows`, ascending: indices of the segments to keep.
     """
     samples = max(round(duration / runs[0].sample_time), 2) if runs else 2
     starts = [side_by_side(run, samples) for run in runs]
@@ -176,7 +176,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
         if abs(run.sample_time / dt - 1.0) > 1e-3:
             raise UsageError(
                 f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; "
-                "lay them on one grid"
+                "resample them to one sample time"
             )
     names = measured_columns(model)
     voltage, first = _inputs(runs, starts, samples)
@@ -208,7 +208,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
 
 
 def _inputs(runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple[Array, Index]:
-    """What `cut_at` needs of the inputs, and where each segment's begin there: a few breakaways of minutes, often."""
+    """The inputs that `cut_at` needs, and the index of each segment's first: often a few seconds out of minutes."""
     inputs, first, count = [], [], 0
     for run, begin in zip(runs, starts, strict=True):
         edges = np.zeros(len(run) + 1, dtype=np.int64)
@@ -222,7 +222,7 @@ def _inputs(runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple
 
 
 def side_by_side(run: Run, samples: int) -> Index:
-    """Grid points where segments of `samples` begin: side by side, without those that a gap cuts."""
+    """Grid points where segments of `samples` begin: side by side, without segments that contain a gap."""
     starts = np.arange(0, len(run) - samples, samples, dtype=np.int64)
     whole = np.array([bool(run.measured[s : s + samples + 1].all()) for s in starts], dtype=bool)
     return starts[whole] if len(starts) else starts

@@ -1,7 +1,7 @@
 """Least squares on the starts of all segments and the parameters together, with the starts eliminated.
 
 Gauss-Newton with Levenberg-Marquardt damping on the parameters. The starts follow them by the linear prediction; where
-that does not lower a segment's error, its start is fitted by itself, so that no single breakaway holds up the rest.
+that does not lower a segment's error, its start is fitted by itself, so that a single breakaway does not stop the rest.
 """
 
 from collections.abc import Callable
@@ -19,18 +19,18 @@ Index = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 OUTLYING = 4.0  # times the median loss of a segment
-_POOR = 1.1  # times the same: noise alone leaves half a second at 1 kHz within it
-_ITERATIONS, _ENOUGH = 20, 0.3  # of one descent: steps, and gain in cost (half a squared deviation) worth another
-_ROUGHLY = 1e-3  # share of the cost: gain worth another step before starts have been reseated for the first time
-_ROUNDS, _WORTH = 6, 2.0  # rounds, and gain of a round worth another
-_LEAST, _MOST, _HARDER = 1e-9, 1e3, 30.0  # damping, and by how much it grows after a step that gains nothing
-_SETTLING = 6  # steps of a single start that the linear prediction left worse
-_WORSE = 1.0  # of a segment's loss: more is worth those
+_POOR = 1.1  # times the same: with noise alone, half a second at 1 kHz stays below it
+_ITERATIONS, _ENOUGH = 20, 0.3  # of one descent: most steps, and least gain in cost (half a squared deviation) of each
+_ROUGHLY = 1e-3  # share of the cost: least gain of a step before starts have been reseated for the first time
+_ROUNDS, _WORTH = 6, 2.0  # most rounds, and least gain of a round before another
+_LEAST, _MOST, _HARDER = 1e-9, 1e3, 30.0  # bounds of the damping, and its growth after a step without gain
+_SETTLING = 6  # steps of a single start that is worse after the linear prediction
+_WORSE = 1.0  # rise of a segment's loss above which its start is fitted by itself
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Parameters (free,), starts (segments, states), the course of the cost, the equations there, who was counted."""
+    """Parameters (free,), starts (segments, states), cost by iteration, the equations there, the active segments."""
 
     theta: Array
     states: Array
@@ -45,9 +45,9 @@ class Shooting(Problem):
     def solve(self, states: Array, progress: Progress, fresh: bool = False) -> Solution:
         """Rounds of descent and of reseating starts, until neither helps. NumericalError when nothing is finite.
 
-        A segment whose breakaway is predicted too early or too late sits in a valley of its own, which no descent
-        leaves: between rounds starts are fitted afresh from their guesses, and the better of both is kept. `fresh`: the
-        starts are such already, and the guesses made with parameters as good as those at hand.
+        A segment whose breakaway is predicted too early or too late is in a local minimum, which no descent leaves:
+        between rounds starts are fitted again from their guesses, and the better of both is kept. `fresh`: the starts
+        were just fitted from guesses by these parameters.
         """
         theta, costs = self.unknowns.begin.copy(), []
         for number in range(int(fresh), _ROUNDS):
@@ -134,12 +134,12 @@ class Shooting(Problem):
         return new, theta, residuals
 
     def _take_better(self, states: Array, residuals: Array, others: Array, theirs: Array, which: Index) -> None:
-        """Put other starts (which, states) with their residuals in place where they fit better."""
+        """Replace starts and their residuals by `others` (which, states) where these fit better."""
         better = self.losses(theirs) < self.losses(residuals[which])
         states[which[better]], residuals[which[better]] = others[better], theirs[better]
 
     def _reseat(self, states: Array, theta: Array, poor_only: bool) -> tuple[Array, Array]:
-        """The better start of each segment, at hand or fitted afresh from its guess; states and residuals."""
+        """The better start of each segment, the present one or one fitted from its guess; states and residuals."""
         residuals, states = self.residuals(states, theta), states.copy()
         losses = self.losses(residuals)
         which = np.flatnonzero(losses > _POOR * np.median(losses)) if poor_only else np.arange(len(states))
@@ -150,7 +150,7 @@ class Shooting(Problem):
         return states, residuals
 
     def _outliers(self, residuals: Array) -> NDArray[np.bool_]:
-        """Segments whose loss is far above the median, the worst twentieth at most."""
+        """Segments whose loss is far above the median, at most the worst 5 %."""
         each = self.losses(residuals)
         most = max(len(each) // 20, 1)
         far = each > OUTLYING * np.median(each)

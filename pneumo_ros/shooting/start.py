@@ -1,9 +1,9 @@
 """The state at given instants of a recording: estimated with the model from the measurements around them.
 
-A prediction started from smoothed signals alone is off by many times the noise even with the true parameters: what
-decides when a stuck piston breaks away is the bristle's deflection, which no sensor shows. Here a short simulation is
-fitted to the measurements before and after each instant, with its initial state free (Gauss-Newton with
-Levenberg-Marquardt damping); where the measurements say nothing, the balance of forces does.
+A prediction started from smoothed signals alone is off by many times the noise even with the true parameters: the
+bristle's deflection, which no sensor shows, decides when a stuck piston breaks away. Here a short simulation is fitted
+to the measurements before and after each instant, with its initial state free (Gauss-Newton with Levenberg-Marquardt
+damping); where the measurements do not determine the state, the balance of forces does.
 """
 
 import numpy as np
@@ -16,8 +16,8 @@ from pneumo_ros.shooting.segments import PROBE, Segments, cut_at
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-BEFORE, AFTER = 0.3, 0.1  # s, fitted before and after each instant: most of what the state follows from is its past
-_ITERATIONS = 20  # at most; four on average, ten and more where a breakaway hides between guess and truth
+BEFORE, AFTER = 0.3, 0.1  # s, fitted before and after each instant: the state depends mostly on the past
+_ITERATIONS = 20  # at most; four on average, ten and more where a breakaway lies between guess and true state
 _ENOUGH, _STUCK = 1e-3, 1e5  # a start is found when a step gains less than this share, or when damping is beyond this
 
 
@@ -39,9 +39,9 @@ def start_states(model: Model, run: Run, at: Index) -> Array:
 def fit_starts(
     model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS, threads: int = 1
 ) -> Array:
-    """Initial states (segments, states) of least whitened squares about their guesses, each segment by itself.
+    """Initial states (segments, states) by whitened least squares, with priors at their guesses, for each segment.
 
-    `begin` (segments, states) is where the search begins, by default the guesses.
+    `begin` (segments, states): start of the search, by default the guesses.
     """
     x = segments.seated(model) if begin is None else begin.copy()
     coarse, damping = segments.coarser(), np.full(len(x), 1e-3)

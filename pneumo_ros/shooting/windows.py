@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 class Prediction:
     """Simulated against measured over windows: grid index of each window's start, and errors by signal name.
 
-    errors[name] has shape (windows, samples), what the model's sensor would read minus measurement in the signal's
-    unit, NaN where nothing was measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
+    errors[name] has shape (windows, samples), the model's sensor reading minus the measurement in the signal's unit,
+    NaN where nothing was measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
     """
 
     start: NDArray[np.int64]
@@ -33,12 +33,12 @@ class Prediction:
 def predict(model: Model, run: Run, horizon: float) -> Prediction:
     """Predict a run in windows of `horizon` [s], each from a start estimated around its first sample.
 
-    Raises UsageError when the run holds no such window.
+    Raises UsageError when the run holds no window of this length.
     """
     samples = round(min(len(run), horizon / run.sample_time))
     if samples < 2:
         raise UsageError(
-            f"a horizon of {horizon:g} s holds no two samples of {run.name}, {run.sample_time:.3g} s apart; "
+            f"a horizon of {horizon:g} s holds fewer than two samples of {run.name}, {run.sample_time:.3g} s apart; "
             "give a longer --horizon"
         )
     starts = side_by_side(run, samples)
@@ -51,7 +51,7 @@ def predict(model: Model, run: Run, horizon: float) -> Prediction:
 
 
 def free_run(model: Model, run: Run) -> Prediction:
-    """Simulate the whole run from its first sample alone; where the state leaves the finite numbers, errors are too."""
+    """Simulate the whole run from its first sample alone; where the state diverges, errors are not finite."""
     return _predict_from(model, run, np.zeros(1, dtype=np.int64), len(run) - 1)
 
 

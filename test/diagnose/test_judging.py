@@ -157,4 +157,4 @@ def test_a_profile_of_a_texture_is_no_effect(name: str, force: float, objects: b
     own = coordinates(MODEL.library.find(name))
     h = Hypothesis(name, own, np.full(len(own), 0.3), np.empty(0), np.empty(0), t=20.0)
     candidate = Candidate(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)
-    assert any("noise does not explain" in words for words in candidate.objections) is objects
+    assert any("misfit beyond noise" in words for words in candidate.objections) is objects

@@ -41,7 +41,7 @@ def test_along_its_tangent_what_is_missing_promises_most() -> None:
 
 
 def test_sizes_of_different_kinds_are_tried_one_at_a_time() -> None:
-    """A longer tail stands in for a smaller exponent: both at once are neither."""
+    """A longer tail replaces a smaller exponent: a fit of both finds neither."""
     error, model = by_sizes(alone(), slips(), "stribeck_shape")
     assert np.isfinite(error)
     assert (model["stribeck_shape.exponent"] == 2.0) != (model["stribeck_shape.rational"] == 0.0)

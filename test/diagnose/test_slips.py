@@ -19,7 +19,7 @@ AXIS = load_model("axis")
         ((88.0, 7.8, 1.02, 1.0), 2),  # a valley on the way
         ((88.0, 1.2, 1.0), 1),  # arrived
         ((88.0, 60.0, 20.0), 1),  # something else is missing
-        ((88.0, 30.0, 90.0, 1.0), 1),  # begun anew, and worse
+        ((88.0, 30.0, 90.0, 1.0), 1),  # restarted, and worse
         ((88.0, 90.0, 1.0), 0),
     ],
 )

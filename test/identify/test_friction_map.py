@@ -104,7 +104,7 @@ def test_at_one_speed_friction_is_not_split_up() -> None:
     """Only the sum of Coulomb friction and drag is seen: neither is told, and neither moves."""
     fit = fit_map(wrong(), points((0.1,)), [breakaway(100.0)], FRICTION[:4])
     assert {COULOMB, DRAG} <= set(fit.undetermined)
-    assert "needs speeds over a factor of 1.5; these span 98 to 102 mm/s" in fit.undetermined[DRAG]
+    assert "needs speeds over a factor of 1.5; the speeds here span 98 to 102 mm/s" in fit.undetermined[DRAG]
     assert "these runs leave it anywhere between" in fit.undetermined[COULOMB]
     assert fit.values[COULOMB] == wrong()[COULOMB]
     assert fit.values[DRAG] == wrong()[DRAG]

@@ -72,7 +72,7 @@ def test_damping_is_kept_where_it_is_passive() -> None:
 def test_damping_above_the_bound_is_lowered_to_it() -> None:
     found = fit(truth().with_parameters({DAMPING: 1e4}), [constant_run(7.0)])
     assert found.values[DAMPING] == pytest.approx(3761.0, abs=1.0)
-    assert "lowered to it" in found.remarks[DAMPING]
+    assert "lowered to the passive limit" in found.remarks[DAMPING]
 
 
 def test_bound_of_passive_damping() -> None:

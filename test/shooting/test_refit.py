@@ -75,7 +75,7 @@ def test_parameters_come_back_and_intervals_hold_them() -> None:
 
 
 def test_products_are_not_taken_for_factors() -> None:
-    """The valve sees slope times gain: neither is told apart, and both intervals are as wide as what was known."""
+    """The valve sees slope times gain: they cannot be distinguished, and both intervals are as wide as the priors."""
     _, _, found = whole()
     for name in ("dead_zone.right_slope", "dead_zone.left_slope", "arctan_flow.voltage_gain"):
         assert not found.estimates[name].determined
@@ -166,5 +166,5 @@ def test_what_cannot_be_refitted_is_said() -> None:
         refit(model, [run], free=[COULOMB], priors={COULOMB: 0.0})
     with pytest.raises(DataError, match="no segment without a gap"):
         refit(model, [run], free=[COULOMB], segment=10.0)
-    with pytest.raises(UsageError, match="lay them on one grid"):
+    with pytest.raises(UsageError, match="resample them to one sample time"):
         refit(model, [run, own("steps", sample_time=2e-3, seconds=3.0)[2]], free=[COULOMB])

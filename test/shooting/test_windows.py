@@ -116,7 +116,7 @@ def test_a_free_run_of_the_true_machine_stays_near_the_rig() -> None:
         (30.0, "no window of 30 s without a gap in its 5 s; give a shorter --horizon"),
         (float("inf"), "no window of inf s"),
         (float("nan"), "no window of nan s"),
-        (1e-3, "holds no two samples of steps, 0.001 s apart; give a longer --horizon"),
+        (1e-3, "holds fewer than two samples of steps, 0.001 s apart; give a longer --horizon"),
         (-1.0, "longer --horizon"),
     ],
 )
