@@ -153,7 +153,7 @@ def test_an_interrupt_leaves_what_was_found(folder: Path, tmp_path: Path) -> Non
     with subprocess.Popen(line, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         for said in process.stderr:
-            if "ranking what else" in said:
+            if "ranking further" in said:
                 process.send_signal(signal.SIGINT)
                 break
         out, err = process.communicate()
