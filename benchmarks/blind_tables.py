@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from math import sqrt
 from typing import Any
 
-from pneumo_ros.command.revealing import EXACT, GROUP, Judgement, judge, pairing
+from pneumo_ros.command.demo.revealing import EXACT, GROUP, Judgement, judge, pairing
 
 Result = dict[str, Any]
 BANDS = ((0.7, 1.0), (0.4, 0.7), (0.2, 0.4))

@@ -1,4 +1,4 @@
-"""Runs a programme on a live plant: the node that does it is a process, and tells what happens line by line."""
+"""Runs a programme on a live plant: a node in its own process does it and reports what happens line by line."""
 
 import json
 import os

@@ -103,7 +103,7 @@ def table_text(table: "Table | None") -> str:
 class Progress:
     """Call it with the fraction done, 0 to 1, and what is being done.
 
-    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both tell how long it may still take.
+    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both show how long it may still take.
     """
 
     WAIT = 0.5  # s; work that ends sooner shows nothing
@@ -140,7 +140,7 @@ class Progress:
             print(f"{self.title}: {percent if doing else 10 * self._shown} %{said}", file=self.stream, flush=True)
 
     def _left(self, share: float, now: float) -> str:
-        """', about 20 s left', once enough is done to tell."""
+        """', about 20 s left', once enough is done to estimate it."""
         passed = now - self._start
         if passed < self.GUESS or not 0.02 < share < 1.0:
             return ""

@@ -102,7 +102,7 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
 
 
 def _outdone(name: str, added: list[str], rivals: list[str], model: "Model") -> list[str]:
-    """Why nothing speaks against an effect and yet another one was added."""
+    """Why an effect without objections was not added: another one was."""
     if name in added or rivals or not added:
         return []
     simpler = [other for other in added if other in model.library.find(name).contains]

@@ -65,7 +65,7 @@ def sentences(result: dict[str, Any]) -> list[str]:
             first, second = pair["between"]
             together = "together" if pair["r"] > 0.0 else "against each other"
             said.append(
-                f"{first} and {second} are hard to tell apart (correlation {pair['r']:+.2f}): "
+                f"{first} and {second} are hard to distinguish (correlation {pair['r']:+.2f}): "
                 f"each is known within its interval, and their errors go {together}."
             )
     return [*said, map_sentence(result["map"])]

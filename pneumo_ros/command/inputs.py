@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_FAR = 1e12  # s; farther away from zero, a double does not tell milliseconds apart
+_FAR = 1e12  # s; farther away from zero, a double does not resolve milliseconds
 FORMS = "constant:V, step:V@T, sine:V,HZ, file.csv, or the folder or .mcap of a recording"
 
 

@@ -1,4 +1,4 @@
-"""What `pneumo experiment --separate` says: every experiment on the menu, and what it is expected to tell."""
+"""What `pneumo experiment --separate` says: every experiment, and how well it should distinguish two effects."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -17,8 +17,8 @@ def separation_text(ranked: "Sequence[Separation]", effects: Sequence[str], nois
     first, second = effects
     rows = [("experiment", "separation", f"if {first}", f"if {second}", "takes", "most in")]
     for one in (one for one in ranked if not one.refused):
-        told = (f"{one.separation:.1f}", f"{one.if_a:.1f}", f"{one.if_b:.1f}", f"{one.duration:.0f} s")
-        rows.append((one.offer.name, *told, one.where if one.separation >= NOTHING else ""))
+        cells = (f"{one.separation:.1f}", f"{one.if_a:.1f}", f"{one.if_b:.1f}", f"{one.duration:.0f} s")
+        rows.append((one.offer.name, *cells, one.where if one.separation >= NOTHING else ""))
     lines = [columns(rows, right=(1, 2, 3, 4)), ""]
     lines += [f"{one.offer.name}: {one.offer.prepare}" for one in ranked if one.offer.prepare and not one.refused]
     lines += [f"{one.offer.name} is not offered: in the rehearsal, {one.refused}" for one in ranked if one.refused]

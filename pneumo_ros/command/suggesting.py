@@ -1,4 +1,4 @@
-"""What to record next: to tell an added effect from its rivals, or to see more of what nothing explains."""
+"""What to record next: to distinguish an added effect from its rivals, or to see more of what nothing explains."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ SHOWING = {
 
 
 def suggested(outcome: "Outcome", machine: str, console: Console) -> str:
-    """A sentence, "" when there is nothing to tell apart or nobody to ask; `machine` is what --model takes."""
+    """A sentence, "" where there is nothing to distinguish or after an interrupt; `machine` is what --model takes."""
     if outcome.interrupted or outcome.model.force_driven:
         return ""
     for added in outcome.added:
@@ -27,7 +27,7 @@ def suggested(outcome: "Outcome", machine: str, console: Console) -> str:
 
 
 def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Console) -> str:
-    """The experiment that best tells an effect from its first rival."""
+    """The experiment that best distinguishes an effect from its first rival."""
     from pneumo_ros.experiment.separate import separate
     from pneumo_ros.experiment.suggestion import suggestion
 
@@ -36,7 +36,7 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Co
         with console.progress("Choosing an experiment") as progress:
             ranked = separate(outcome.model, added.effect, rival, progress=progress)
     except PneumoError as problem:  # the diagnosis stands all the same
-        return f"No experiment could be rehearsed that tells {added.effect} from {rival}: {problem}."
+        return f"No experiment that distinguishes {added.effect} from {rival} could be simulated: {problem}."
     except KeyboardInterrupt:
         return ""
     return suggestion(ranked, added.effect, rival, machine)

@@ -28,7 +28,7 @@ def runs_section(result: dict[str, Any], comparison: "Comparison", bucket: int) 
     """A part for every run."""
     every = "every sample" if bucket == 2 else f"two of every {bucket} samples, those of smallest and largest error"
     text = (
-        f"Measured, predicted over windows of {result['horizon_s']:g} s that start anew from an estimated state, and "
+        f"Measured, predicted over windows of {result['horizon_s']:g} s that each start from an estimated state, and "
         f"simulated freely from the first sample (dashed, shown by a click on its name). Drawn from {every}. Drag "
         "across a plot to zoom all plots of the run; double click to see the whole run again."
     )

@@ -1,4 +1,4 @@
-"""The same work for many keys, over processes or a cluster: it resumes, and repeats what a dead worker had begun."""
+"""The same work for many keys, over processes or a cluster: it resumes, and repeats the work of a worker that died."""
 
 from pneumo_ros.sweep.executors import Pool, open_pool
 from pneumo_ros.sweep.journal import Journal

@@ -30,7 +30,7 @@ class Here(Executor):
 
 
 class Pool:
-    """An executor that can be had anew when it broke, and how much it is worth giving it at a time."""
+    """An executor that can be replaced when it breaks, and how many pieces of work it takes at a time."""
 
     def __init__(self, make: Callable[[], Executor], workers: int) -> None:
         """`make` gives a fresh executor, any of concurrent.futures; it has so many `workers`."""

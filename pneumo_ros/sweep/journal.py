@@ -13,7 +13,7 @@ from pneumo_ros.errors import DataError, UsageError
 class Journal:
     """Results by key, in memory and in a file. A context manager.
 
-    The file belongs to one sweep, told by `purpose`: what was computed for another one, of other code or with other
+    The file belongs to one sweep, named by `purpose`: what was computed for another one, of other code or with other
     options, is not taken for a result of this one. A last line that was cut off is dropped.
     """
 

@@ -1,4 +1,4 @@
-"""What a request gets that cannot be answered: a sentence, never a page of somebody else's or a traceback."""
+"""The answer to a request that fails: one sentence, never a traceback or a page of the web server."""
 
 import logging
 import traceback
@@ -11,7 +11,7 @@ _WORDS = 200  # characters of what went wrong
 
 
 def answer_in_words(server: Flask) -> None:
-    """Errors of `server` become a line of text: what the page never sends is the sender's, the rest is ours."""
+    """Errors of `server` become a line of text: 400 for requests that the page never sends, 500 for failures."""
     server.register_error_handler(HTTPException, _refused)
     server.register_error_handler(Exception, _failed)
 
@@ -21,14 +21,14 @@ def _refused(problem: HTTPException) -> Response:
 
 
 def _failed(problem: Exception) -> Response:
-    """A request that Dash cannot take apart before any panel sees it is malformed; else a panel failed."""
+    """A request that fails before it reaches a panel is malformed; otherwise a panel failed."""
     frames = traceback.extract_tb(problem.__traceback__)
     ours = [f for f in frames if "/pneumo_ros/workbench/" in f.filename.replace("\\", "/")]
     what = f"{type(problem).__name__}: {problem}"[:_WORDS]
     if not ours:
         return _said(f"The page does not send this ({what}); reload it", 400)
     _LOG.error("%s failed at %s:%s: %s", request.path, ours[-1].filename, ours[-1].lineno, what)
-    return _said(f"The workbench failed at this ({what}); where, is said in its terminal", 500)
+    return _said(f"The workbench failed ({what}); its terminal shows where", 500)
 
 
 def _said(words: str, status: int) -> Response:

@@ -39,14 +39,14 @@ class Bag:
 
 
 def found_bags(paths: Iterable[str | Path], folder: Path | None = None) -> list[Bag]:
-    """A bag for every recording named, or in a folder named; paths below `folder` are told from there."""
+    """A bag for every recording named, or in a folder named; paths below `folder` are relative to it."""
     found: dict[Path, Bag] = {}
     for given in paths:
         for path in recordings_in(Path(given)) or [Path(given)]:
             whole = path.resolve()
-            told = whole.relative_to(folder) if folder and whole.is_relative_to(folder) else whole
+            shown = whole.relative_to(folder) if folder and whole.is_relative_to(folder) else whole
             name = whole.stem if whole.suffix in (".mcap", ".db3") else whole.name
-            found.setdefault(whole, Bag(name, str(told), "hold" if name.startswith(_HELD) else "fit"))
+            found.setdefault(whole, Bag(name, str(shown), "hold" if name.startswith(_HELD) else "fit"))
     return _told_apart(list(found.values()))
 
 

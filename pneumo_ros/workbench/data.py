@@ -20,7 +20,7 @@ _LONGEST = 100_000  # bytes of a question
 
 
 def answer_plots(server: Flask, desks: Desks) -> None:
-    """POST /signals/DESK and its like take a JSON object and return one; 400 tells what is wrong."""
+    """POST /signals/DESK and its like take a JSON object and return one; status 400 says what is wrong."""
 
     def answering(make: Callable[[Desk, Mapping[str, Any]], Any]) -> Callable[[str], Response]:
         def answer(desk: str) -> Response:
@@ -78,7 +78,7 @@ def number(value: Any) -> float:
 
 
 def variants_of(desk: Desk, other: Any) -> dict[str, Variant]:
-    """The machine at hand and the one beside it, by the role of their colour."""
+    """The current machine and the one beside it, by the role of their colour."""
     found = {"model": desk.variant}
     if isinstance(other, int) and other != desk.current and 0 <= other < len(desk.variants):
         found["second"] = desk.variants[other]

@@ -26,7 +26,7 @@ class Given:
 
 
 class Desk:
-    """Recordings, variants of the machine, effects ticked, and the job at hand, in a folder of its own."""
+    """Recordings, variants of the machine, effects ticked, and the running job, in a folder of its own."""
 
     def __init__(self, folder: Path, given: Given) -> None:
         self.folder, self.given = folder, given
@@ -49,11 +49,11 @@ class Desk:
 
     @property
     def variant(self) -> Variant:
-        """The machine at hand."""
+        """The current machine."""
         return self.variants[self.current]
 
     def model(self, number: int | None = None) -> Model:
-        """The model of a variant, by default of the one at hand."""
+        """The model of a variant, by default of the current one."""
         chosen = self.variant if number is None else self.variants[number]
         return model_of(chosen.machine, self.folder, self.given.effects)
 
@@ -74,7 +74,7 @@ class Desk:
             self.changed()
 
     def undo(self) -> None:
-        """Back to what the machine at hand was made from."""
+        """Back to what the current machine was made from."""
         if self.variant.parent is not None:
             self.choose(self.variant.parent)
 
@@ -98,7 +98,7 @@ class Desk:
     # --- work -------------------------------------------------------------------------------------------------------
 
     def compare(self) -> None:
-        """Start comparing the machine at hand; UsageError when there is nothing to compare with."""
+        """Start comparing the current machine; UsageError when there is nothing to compare with."""
         self._start(lambda number: compare_plan(self._bench(), number))
 
     def refit(self) -> None:
@@ -119,7 +119,7 @@ class Desk:
         self._start(lambda number: diagnose_plan(self._bench(), self._machine_name(len(self.variants)), number))
 
     def cancel(self) -> None:
-        """End the job at hand."""
+        """End the running job."""
         if self.job is not None:
             self.job.cancel()
 
@@ -176,7 +176,7 @@ class Desk:
             self.message = str(problem)
 
     def changed(self) -> None:
-        """The page has something new to show; takes no lock: jobs tell their end by it."""
+        """The page has something new to show; takes no lock: jobs call it at their end."""
         self.revision, self.message = self.revision + 1, ""
 
 

@@ -33,7 +33,7 @@ def register(panels: Panels) -> None:
 
 
 def render(desk: Desk, _revision: int) -> list[Any]:
-    """The last diagnosis on the way to the machine at hand."""
+    """The last diagnosis on the way to the current machine."""
     found = [v for v in desk.lineage() if "candidates" in v.made_by()]
     if not found:
         return [content("diagnosis-content", [Section("", "Diagnosis", tag("p", _EMPTY))], 0)]

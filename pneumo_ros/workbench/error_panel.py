@@ -45,14 +45,14 @@ def register(panels: Panels) -> None:
 
 
 def judged_by(desk: Desk) -> tuple[list[str], str]:
-    """The recordings that errors are told of: those held out, else all in use; and how to call them."""
+    """The recordings whose errors are shown, held-out ones or else all in use, and words for them."""
     held = [bag.name for bag in desk.shelf.bags if bag.role == "hold" and not bag.problem]
     used = [bag.name for bag in desk.shelf.bags if bag.role != "out" and not bag.problem]
     return (held, "held out, never fitted") if held else (used, "that were fitted too")
 
 
 def course(desk: Desk) -> list[tuple[str, float]]:
-    """(name, error in noise floors) from the machine as given to the one at hand, as far as they were compared."""
+    """(name, error in noise floors) from the machine as given to the current one, as far as they were compared."""
     bags, steps = judged_by(desk)[0], list[tuple[str, float]]()
     for variant in desk.lineage():
         before = variant.made_by().get("course", [])
@@ -68,7 +68,7 @@ def _label(variant: Variant) -> str:
 
 
 def render(desk: Desk, _revision: int) -> list[Any]:
-    """The waterfall of the machine at hand."""
+    """The waterfall of the current machine."""
     from pneumo_ros.report.waterfall import waterfall_chart
 
     steps = course(desk)

@@ -1,4 +1,4 @@
-"""A job: verbs that run one after another in processes of their own, told by their progress, and ended at will."""
+"""A job: verbs that run one after another in processes of their own, which report their progress and can be ended."""
 
 import os
 import re
@@ -14,7 +14,7 @@ from typing import Literal
 
 State = Literal["running", "done", "failed", "cancelled"]
 # what `command.console.Progress` writes where there is no terminal
-_TOLD = re.compile(r"(?P<title>[^:]+): (?P<percent>\d+) %(?:, about [^:]+ left)?(?:: (?P<doing>.*))?")
+_PROGRESS = re.compile(r"(?P<title>[^:]+): (?P<percent>\d+) %(?:, about [^:]+ left)?(?:: (?P<doing>.*))?")
 _PATIENCE = 5.0  # s, for a verb to end after SIGTERM
 _LONGEST = 120  # letters of a message
 _GUESS = 2.0  # s of work before the rest is estimated
@@ -30,7 +30,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Status:
-    """What there is to show of a job: `share` is 0 to 1, `left` [s] is None until it can be told."""
+    """What there is to show of a job: `share` is 0 to 1, `left` [s] is None until it can be estimated."""
 
     title: str
     state: State
@@ -93,7 +93,7 @@ class Job:
             passed += line.weight
         try:
             self._done()
-        except Exception as error:  # the page tells it; a thread would lose it
+        except Exception as error:  # the page shows it; a thread would lose it
             with self._lock:
                 self._finish("failed", f"{type(error).__name__}: {error}")
             raise
@@ -119,11 +119,11 @@ class Job:
             return self._state == "running"
 
     def _hear(self, text: str, begin: float, part: float) -> None:
-        told = _TOLD.fullmatch(text)
+        line = _PROGRESS.fullmatch(text)
         with self._lock:
-            if told:
-                self._share = max(self._share, begin + part * int(told["percent"]) / 100.0)
-                self._doing = told["doing"] or told["title"].lower()
+            if line:
+                self._share = max(self._share, begin + part * int(line["percent"]) / 100.0)
+                self._doing = line["doing"] or line["title"].lower()
             elif text:
                 self._doing = text[:_LONGEST]
 

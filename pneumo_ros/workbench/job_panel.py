@@ -1,4 +1,4 @@
-"""The job at hand: what it does, how long it may still take, and a button that ends it.
+"""The running job: what it does, how long it may still take, and a button that ends it.
 
 The page's script looks at the desk twice a second and after every action (`status_of`), and is the only one to set
 `revision`, on which all panels depend.

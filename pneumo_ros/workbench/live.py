@@ -1,4 +1,4 @@
-"""A live axis: a watcher beside its nodes tells what it does, a recorder records it. Each is a process of its own."""
+"""A live axis: a watcher beside its nodes reports what it does, a recorder records it. Each is a process of its own."""
 
 import json
 import math
@@ -23,7 +23,7 @@ _NAME = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*")
 
 
 class Live:
-    """What an axis in `namespace` does, as its watcher tells it; UsageError for a bad name or where ROS is missing."""
+    """What an axis in `namespace` does, as its watcher reports it; UsageError for a bad name or without ROS."""
 
     def __init__(self, namespace: str, folder: Path) -> None:
         require_ros()
@@ -66,7 +66,7 @@ class Live:
         return {name: ([t for t, _ in points], [v for _, v in points]) for name, points in inside.items() if points}
 
     def set(self, node: str, name: str, value: float) -> None:
-        """Ask a node to take a value for a parameter; `answer` tells what became of it. UsageError for a bad name."""
+        """Ask a node to take a value for a parameter; `answer` says whether it did. UsageError for a bad name."""
         if not _NAME.fullmatch(node) or not math.isfinite(value):
             raise UsageError(f"'{node[:60]}' is no name of a node, such as simulator")
         whole = node if node.startswith("/") else "/" + "/".join(part for part in (self.namespace, node) if part)

@@ -61,7 +61,7 @@ def _variants(desk: Desk, _revision: int) -> list[Any]:
 
 
 def render(desk: Desk, _revision: int, shown: int | None) -> tuple[Any, int]:
-    """The effects room by room; drawn anew for another variant only, so that no tick is lost."""
+    """The effects room by room; redrawn for another variant only, so that no tick is lost."""
     if shown == desk.chosen:
         raise PreventUpdate
     model = desk.model()

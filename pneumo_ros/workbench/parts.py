@@ -46,7 +46,7 @@ class Panels:
             except PneumoError as problem:
                 desk.say(problem)
             if desk.revision == before:
-                raise PreventUpdate  # what is drawn anew asks, too
+                raise PreventUpdate  # what is redrawn asks, too
             return desk.revision
 
         self.app.callback(ACTED, list(inputs), WHERE, prevent_initial_call=True)(self._on_desk(change))
@@ -98,5 +98,5 @@ def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> h
 
 
 def asked(clicks: Sequence[int | None] | int | None) -> bool:
-    """Whether a button was pressed, rather than drawn anew."""
+    """Whether a button was pressed, rather than redrawn."""
     return any(clicks) if isinstance(clicks, (list, tuple)) else bool(clicks)

@@ -14,7 +14,7 @@ _EFFECT_LINE, _COMPARE_LINE, _DIAGNOSE_LINE = 6.0, 1.0, 12.0  # shares of a job'
 
 @dataclass(frozen=True)
 class Bench:
-    """What every verb is told: the recordings, how to read them, the machine file and files of effects."""
+    """What every verb is given: the recordings, how to read them, the machine file and files of effects."""
 
     bags: tuple[Bag, ...]
     how: ReadOptions

@@ -40,7 +40,7 @@ def register(panels: Panels) -> None:
 
 
 def render(desk: Desk, _revision: int, chosen: str | None, drawn: str | None) -> tuple[Any, str, Any]:
-    """Every recording, what was drawn, and which one is plotted; drawn anew only where something changed."""
+    """Every recording, what was drawn, and which one is plotted; redrawn only where something changed."""
     shown = desk.shelf.bag(chosen)
     name = shown.name if shown else None
     now = repr((desk.shelf.bags, name))

@@ -1,4 +1,4 @@
-"""The chart behind the sliders: measured, the machine at hand, and the same machine with the sliders' values."""
+"""The chart behind the sliders: measured, the current machine, and the same machine with the sliders' values."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -10,7 +10,7 @@ from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.thin import Span, in_view, packed
 
 _ROOM = 600  # pixels
-_TITLES = {"measured": "measured", "second": "machine at hand", "model": "with the sliders"}
+_TITLES = {"measured": "measured", "second": "current machine", "model": "with the sliders"}
 
 
 def values_of(model: Model, stops: Mapping[str, Any]) -> dict[str, float]:
@@ -21,7 +21,7 @@ def values_of(model: Model, stops: Mapping[str, Any]) -> dict[str, float]:
     return {name: slid(model[name], stop, model.specification(name)) for name, stop in own.items()}
 
 
-def told(model: Model, name: str) -> str:
+def value_text(model: Model, name: str) -> str:
     """A parameter as people read it: '80 N'."""
     return f"{number(model[name], 4)} {model.specification(name).unit}".removesuffix(" 1")
 
@@ -48,7 +48,7 @@ def response_chart(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | Non
         traces = [_trace(role, part.time, factor * curve) for role, curve in curves.items()]
         panels.append({"title": f"{words} [{unit}]", "share": 1, "ticks": [], "traces": traces})
     ends = [float(part.time[0]), float(part.time[-1])]
-    texts = {name: told(model, name) for name in asked.get("names") or () if name in model.parameters}
+    texts = {name: value_text(model, name) for name in asked.get("names") or () if name in model.parameters}
     return {"title": bag.name, "x": "time [s]", "link": "response", "span": ends, "logX": False, "legend": True,
             "panels": panels, "height": 90 + 150 * len(panels), "values": texts}  # fmt: skip
 
@@ -60,7 +60,7 @@ def _trace(role: str, time: Any, values: Any) -> dict[str, Any]:
 
 @lru_cache(8)
 def _begun(desk: Desk, _chosen: int, name: str, span: Span) -> Any:
-    """The stretch with its start, and the response of the machine at hand."""
+    """The stretch with its start, and the response of the current machine."""
     from pneumo_ros.reading.read import checked_run
     from pneumo_ros.workbench.response import respond, stretch
 

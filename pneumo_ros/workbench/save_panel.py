@@ -32,7 +32,7 @@ def register(panels: Panels) -> None:
 
 
 def saved_files(desk: Desk) -> dict[str, tuple[str, Path]]:
-    """Name for the browser -> (what it is, where it lies), of the machine at hand."""
+    """Name for the browser -> (what it is, where it lies), of the current machine."""
     variant, found = desk.variant, dict[str, tuple[str, Path]]()
     if (desk.folder / variant.machine).is_file():
         found[Path(variant.machine).name] = ("machine file", desk.folder / variant.machine)

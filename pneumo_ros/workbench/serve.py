@@ -24,7 +24,7 @@ def serve(given: Given, port: int, ready: Callable[[str], None]) -> None:
     desks = Desks(given)
     try:
         guard = Guard(listening.getsockname()[1])
-        desks.prepare()  # a wrong machine file is told before anybody opens the page
+        desks.prepare()  # a wrong machine file is reported before anybody opens the page
         app = make_app(desks, guard)
         logging.getLogger("waitress.queue").setLevel(logging.ERROR)  # a busy machine is no news
         server = create_server(app.server, sockets=[listening], threads=_THREADS, ident=None)

@@ -1,4 +1,4 @@
-"""The recordings of one desk: laid on it, told apart, read, cut, and given their parts in a fit."""
+"""The recordings of one desk: named apart, read, cut, and assigned to fit or hold-out."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -14,7 +14,7 @@ from pneumo_ros.workbench.bags import ROLES, Bag, Role, found_bags, problem_of, 
 class Shelf:
     """Recordings in order; `changed` is called when something about them has changed.
 
-    Paths below `folder` are told from there; `atmosphere` [Pa] is added to gauge pressures.
+    Paths below `folder` are relative to it; `atmosphere` [Pa] is added to gauge pressures.
     """
 
     def __init__(self, folder: Path, how: ReadOptions, atmosphere: float, changed: Callable[[], None]) -> None:

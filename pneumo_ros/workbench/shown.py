@@ -8,7 +8,7 @@ from pneumo_ros.report.page import chart_json, section_html
 
 
 def content(target: str, sections: Sequence[Section], stamp: object) -> dict[str, Any]:
-    """Sections for the element `target`: escaped markup and charts by name. `stamp` tells one content from another."""
+    """Sections for the element `target`: escaped markup and charts by name. `stamp` differs between contents."""
     found = Report("", "", True, tuple(sections), {}).charts()
     charts = {chart.name: chart_json(chart) for chart in found if isinstance(chart, Chart)}
     return {"target": target, "html": "".join(section_html(s) for s in sections), "charts": charts, "stamp": stamp}

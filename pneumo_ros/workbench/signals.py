@@ -130,8 +130,8 @@ def readings(bag: Bag, recording: Recording, view: View, variants: Mapping[str, 
         for variant in variants.values():
             found = _predicted(variant, bag, name)
             if found is not None:
-                told = _at(found[0], factor * (found[1] + found[2]))
-                rows.append((f"{words}, {_title(variant)}", *_values(at, told), unit))
+                values = _at(found[0], factor * (found[1] + found[2]))
+                rows.append((f"{words}, {_title(variant)}", *_values(at, values), unit))
     return rows
 
 
@@ -141,5 +141,5 @@ def _at(time: Array, values: Array) -> Any:
 
 def _values(at: Mapping[str, float], value: Any) -> tuple[str, str, str]:
     a, b = (value(at[name]) if name in at else math.nan for name in "AB")
-    told = ("-" if math.isnan(one) else f"{one:.6g}" for one in (a, b, b - a))
-    return next(told), next(told), next(told)
+    texts = ("-" if math.isnan(one) else f"{one:.6g}" for one in (a, b, b - a))
+    return next(texts), next(texts), next(texts)

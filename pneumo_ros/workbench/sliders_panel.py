@@ -8,7 +8,7 @@ from dash.exceptions import PreventUpdate
 from pneumo_ros.plant import Model
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.parts import Panels, asked, button, drop_down, revision
-from pneumo_ros.workbench.response_chart import told, values_of
+from pneumo_ros.workbench.response_chart import value_text, values_of
 
 _BUTTONS = {"reset": "Back to the values", "keep": "Keep as a variant"}
 
@@ -72,7 +72,7 @@ def _draw(
 def _slider(model: Model, name: str, stop: int) -> html.Label:
     known, key = model.specification(name), name.partition(".")[2].replace("_", " ")
     bar = dcc.Input(type="range", min=-100, max=100, step=1, value=stop, id={"type": "slider", "name": name})
-    value = html.Output(told(model, name), **{"data-told": name})
+    value = html.Output(value_text(model, name), **{"data-told": name})
     return html.Label([html.Span(key, title=known.meaning), bar, value], className="slider-row")
 
 

@@ -75,7 +75,7 @@ def model_of(machine: str, folder: Path, effects: Sequence[str]) -> Model:
 
 
 def typical_error(compared: Compared, bags: Sequence[str]) -> float | None:
-    """Error of a typical window over `bags` in noise floors, as `pneumo diagnose` tells it; None without them.
+    """Error of a typical window over `bags` in noise floors, as in `pneumo diagnose`; None without them.
 
     The geometric mean over all windows, and the root mean square over the signals.
     """

@@ -9,7 +9,7 @@ import pytest
 from command.lacking import VISCOUS, shelf
 
 from pneumo_ros.command.main import main
-from pneumo_ros.command.verb.add import told_apart
+from pneumo_ros.command.verb.add import separated
 from pneumo_ros.plant import load_model
 
 
@@ -42,9 +42,9 @@ def test_the_error_falls_to_the_noise_floor(folder: Path) -> None:
     assert load_model(folder / "more.yaml")["viscous_friction.coefficient"] == own["value"]
 
 
-def test_effects_and_recordings_are_told_apart() -> None:
+def test_effects_and_recordings_are_separated() -> None:
     model = load_model()
-    assert told_apart(["runs", "payload_mass", "runs/steps"], model) == (["payload_mass"], ["runs", "runs/steps"])
+    assert separated(["runs", "payload_mass", "runs/steps"], model) == (["payload_mass"], ["runs", "runs/steps"])
 
 
 @pytest.mark.parametrize(
@@ -52,9 +52,9 @@ def test_effects_and_recordings_are_told_apart() -> None:
     [
         (
             ["viscous_frction", "runs"],
-            "'viscous_frction' is neither an effect nor a recording that is there; did you mean",
+            "'viscous_frction' is neither an effect nor an existing recording; did you mean",
         ),
-        (["zzz", "runs"], "'zzz' is neither an effect nor a recording that is there; see: pneumo effects"),
+        (["zzz", "runs"], "'zzz' is neither an effect nor an existing recording; see: pneumo effects"),
         (["payload_mass", "runs/stepps"], "there is no recording runs/stepps"),
         (["runs"], "name an effect to add"),
         (["payload_mass"], "pneumo add payload_mass BAG... --out MODEL"),

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from pneumo_ros.command.console import Console
-from pneumo_ros.command.demo_machine import _reveal
-from pneumo_ros.command.hidden_machine import second_simulator
+from pneumo_ros.command.demo.hidden_machine import second_simulator
+from pneumo_ros.command.demo.machine import _reveal
 from pneumo_ros.command.main import main
 from pneumo_ros.plant import load_model
 from pneumo_ros.records import read_recording

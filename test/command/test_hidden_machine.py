@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from pneumo_ros.command.console import Console
-from pneumo_ros.command.hidden_machine import HIDEABLE, WEAR, hiding_model, record_machine
+from pneumo_ros.command.demo.hidden_machine import HIDEABLE, WEAR, hiding_model, record_machine
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import load_model
 from pneumo_ros.records import read_recording

@@ -35,6 +35,6 @@ def test_wording_of_a_map_that_fits_roughly_or_not_at_all() -> None:
 def test_wording_of_strong_correlation() -> None:
     pair = {"between": ["a.b", "a.c"], "r": -0.97, "strong": True}
     said = text(result() | {"correlations": [pair, pair | {"r": 0.5, "strong": False}]}, verbose=False)
-    assert said.count("hard to tell apart") == 1
-    assert "a.b and a.c are hard to tell apart (correlation -0.97)" in said
+    assert said.count("hard to distinguish") == 1
+    assert "a.b and a.c are hard to distinguish (correlation -0.97)" in said
     assert "their errors go against each other" in said

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pneumo_ros.command.revealing import judge
+from pneumo_ros.command.demo.revealing import judge
 
 VISCOUS, LOAD, SPRING = "viscous_friction", "constant_load", "spring_load"
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from rig import bags, case, effects
 
-from pneumo_ros.command.revealing import judge
+from pneumo_ros.command.demo.revealing import judge
 from pneumo_ros.diagnose.diagnosis import RULER, diagnose
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import load_model

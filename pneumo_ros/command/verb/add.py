@@ -1,8 +1,8 @@
 """Add effects to a model by name, refit it, and show the error before and after.
 
-The effects of the catalogue (pneumo effects) and of --effects are told from recordings by their names; the order does
-not matter. Model and effects are fitted to BAG... together, and judged by the recordings of --holdout, or by BAG...
-where there is none. Exit code 1 says that the recordings do not determine a parameter of what was added.
+A name of the catalogue (pneumo effects) or of --effects is an effect, everything else is a recording; their order does
+not matter. Model and effects are fitted to BAG... together. The error is that on the recordings of --holdout, or on
+BAG... without --holdout. Exit code 1 says that the recordings do not determine a parameter of an added effect.
 """
 
 import argparse
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Tell effects from recordings, read, add, print, write."""
+    """Separate effects and recordings, read, add, print, write."""
     from pneumo_ros.command.adding_json import adding_dict, undetermined
     from pneumo_ros.command.adding_text import text
     from pneumo_ros.diagnose.adding import add, check_addable
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
     check_machine_file(options)
     model = chosen_model(options)
-    effects, options.bags = told_apart(options.named, model)
+    effects, options.bags = separated(options.named, model)
     check_addable(model, effects)
     paths = roles(options, console)
     report = prepare_report(options)
@@ -62,10 +62,10 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 1 if undetermined(result) else 0
 
 
-def told_apart(named: Sequence[str], model: "Model") -> tuple[list[str], list[str]]:
-    """Effects and recordings, each in the order given: the former are known by name, the latter are there.
+def separated(named: Sequence[str], model: "Model") -> tuple[list[str], list[str]]:
+    """Effects and recordings, each in the order given: a known name is an effect, an existing path a recording.
 
-    Raises UsageError for what is neither, and when either kind is missing.
+    Raises UsageError for a name that is neither, and when there is no effect or no recording.
     """
     known = model.library.names()
     effects = [name for name in named if name in known]
@@ -81,12 +81,12 @@ def told_apart(named: Sequence[str], model: "Model") -> tuple[list[str], list[st
 
 
 def _neither(name: str, known: Sequence[str]) -> str:
-    """A path is told from a name by its looks."""
+    """What is wrong with a name: a slash or a suffix makes it a path, anything else may be a misspelt effect."""
     if "/" in name or Path(name).suffix:
         return f"there is no recording {name}"
     near = unknown_name("effect", name, known)
     hint = near.partition("; ")[2] if "did you mean" in near else "see: pneumo effects"
-    return f"'{name}' is neither an effect nor a recording that is there; {hint}"
+    return f"'{name}' is neither an effect nor an existing recording; {hint}"
 
 
 def _report(found: "Adding", result: dict[str, Any], origin: dict[str, Any]) -> Any:

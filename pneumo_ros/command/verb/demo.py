@@ -1,7 +1,7 @@
-"""The whole story: an axis on ROS 2, then a machine that hides an effect, which is found, added and at last revealed.
+"""Show the program at work: an axis on ROS 2, then a machine with a hidden effect that is found, added and revealed.
 
-The machine is drawn by a seed and simulated by another program, which writes what it hid where nothing looks before the
-end: in a checkout by the simulator under test/rig, which shares no code with the package, else by the package's plant.
+A seed chooses the machine and its hidden effect. Another program simulates it: in a checkout the simulator under
+test/rig, which shares no code with the package, otherwise the package's own plant. The truth is read at the end.
 """
 
 import argparse
@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_output
-from pneumo_ros.command.bag_summary import hardship, traffic
 from pneumo_ros.command.console import Console, program
-from pneumo_ros.command.demo_axis import drive, motion
-from pneumo_ros.command.demo_machine import find_effect
-from pneumo_ros.command.hidden_machine import second_simulator
+from pneumo_ros.command.demo.axis import drive, motion
+from pneumo_ros.command.demo.bag_summary import hardship, traffic
+from pneumo_ros.command.demo.hidden_machine import second_simulator
+from pneumo_ros.command.demo.machine import find_effect
 from pneumo_ros.command.verb.compare import equations_text, run_text
 from pneumo_ros.environment import require_ros
 from pneumo_ros.errors import UsageError
@@ -28,15 +28,16 @@ if TYPE_CHECKING:
 
 SECONDS = 16.0  # that the axis runs
 SEEDS = 10_000  # to draw from where none is given
-OWN_ERROR = """This plant is the model. What exceeds the noise is timing: a command acts when it reaches the simulator
-and is stamped when it reaches the recorder, a fraction of a millisecond apart, and a piston near sticking minds."""
+OWN_ERROR = """This plant is the model. Any error beyond the noise comes from timing: a command acts when it
+reaches the simulator and is stamped when it reaches the recorder, a fraction of a millisecond apart. Near sticking,
+this matters."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--seed, --rig, --recording, --seconds, --out and the common options."""
-    draw = "draws the machine and what it hides (default: another one each time)"
+    draw = "chooses the machine and its hidden effect (default: another one each time)"
     rig = "simulator to record the machine with (default: test/rig of a checkout); none: this package's plant"
-    other = "also compare the default machine with this recording, which it has not made"
+    other = "also compare the default machine with this recording of another plant"
     length = f"how long the axis runs (default: {SECONDS:g})"
     parser.add_argument("--seed", type=int, metavar="N", help=draw)
     parser.add_argument("--rig", metavar="FOLDER", help=rig)
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     """Run the nodes, record and diagnose the machine, reveal what it hid; 1 when a node ended badly."""
     require_ros()
     if not (math.isfinite(options.seconds) and options.seconds >= 4.0):
-        raise UsageError(f"--seconds is {options.seconds:g}; it takes at least 4, so that there is something to see")
+        raise UsageError(f"--seconds is {options.seconds:g}; give at least 4 s")
     seed, rig = _seed(options.seed), _rig(options.rig)
     other = _read(options.recording) if options.recording else None
     folder = check_new_folder(options.out) if options.out else _next_folder(Path("demo_output"))

@@ -1,12 +1,13 @@
-"""Find which effect a model is missing, on what evidence; add it, refit, and write the improved machine file.
+"""Find which effects a model lacks, with the evidence; add them, refit, and write the improved machine file.
 
-The model is refitted to BAG..., every effect at hand is tried on what remains, and what the runs of --holdout support,
-which are never fitted, is added; then again, until nothing pays. The held-out error before and after, the parameters
-with their intervals, the effects that explain as much, and what nothing explains are printed; and where effects cannot
-be told apart, the experiment that would. BAG may be a folder of recordings; what --holdout names is taken out of it.
+The model is refitted to BAG..., and every known effect is tried on what remains. An effect is added if the recordings
+of --holdout, which are never fitted, support it. This repeats until no effect helps. The command prints the held-out
+error before and after, the parameters with their intervals, the effects that explain as much, and what no effect
+explains. If effects cannot be distinguished, it names the experiment that distinguishes them. BAG may be a folder of
+recordings; recordings named by --holdout are not fitted.
 
 Ctrl-C ends the search: what was found by then is printed and written, with exit code 130. Exit code 1 says that
-something is missing which no effect at hand explains.
+something is missing that no known effect explains.
 """
 
 import argparse
@@ -54,7 +55,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     report = prepare_report(options)
     model = chosen_model(options)
     for name in untried(model):
-        console.note(f"{name} is not tried: none of its parameters says where it adds nothing (neutral=0.0)")
+        console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
     outcome, estimates = diagnosed(model, train, held, console)
     experiment = suggested(outcome, options.out or options.model, console)
@@ -72,7 +73,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
 
 def untried(model: "Model") -> list[str]:
-    """Effects that are not of the catalogue and cannot be faded in."""
+    """Effects of --effects without a parameter that has a neutral value: they cannot be added gradually."""
     from pneumo_ros.diagnose.coordinates import coordinates
     from pneumo_ros.plant.library import Library
 

@@ -1,10 +1,10 @@
-"""Experiments on a live plant, simulated or real: what to record to identify a machine or to tell effects apart.
+"""Run an experiment on a live plant, simulated or real, to identify a machine or to distinguish effects.
 
-Without a name the experiments are listed. With one, the plant is taken through its trials inside the limits of its
-stroke, and each is recorded; --plan rehearses them with the model instead, --write makes a file of them, which can be
-changed and given in place of the name. --separate says how well each experiment would tell two effects apart, and
-takes the best. The valve is closed, and the exit code is not 0, when the piston reaches an end stop or goes the wrong
-way, when the plant falls silent, and on Ctrl-C; what was recorded until then is kept.
+Without a name, the experiments are listed. With a name, the plant runs through the trials of the experiment within the
+limits of its stroke, and each trial is recorded. --plan simulates them with the model instead. --write writes them to a
+file that can be edited and given in place of the name. --separate says how well each experiment would distinguish two
+effects, and takes the best. The valve is closed, and the exit code is not 0, when the piston reaches an end stop or
+moves the wrong way, when the plant sends nothing, and on Ctrl-C; what was recorded until then is kept.
 """
 
 import argparse
@@ -40,9 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, metavar="S", help="length of each trial, from when the piston moves")
     parser.add_argument(
         "--separate", nargs=2, metavar=("A", "B"),
-        help="instead of NAME: the experiment that best tells effect A from effect B",
+        help="instead of NAME: the experiment that best distinguishes effect A from effect B",
     )  # fmt: skip
-    parser.add_argument("--prepared", action="store_true", help="what an experiment needs done by hand has been done")
+    parser.add_argument("--prepared", action="store_true", help="the experiment's preparation by hand is done")
     parser.add_argument("--plan", action="store_true", help="show the trials as the model predicts them; move nothing")
     parser.add_argument("--write", metavar="FILE", help="write the programme (.yaml), or its voltages over time (.csv)")
     parser.add_argument("--out", metavar="FOLDER", help="folder for the recordings (default: experiment_1, 2, ...)")
@@ -116,7 +116,7 @@ def _named(options: argparse.Namespace) -> "Programme":
 
 
 def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[Programme | None, dict[str, Any]]":
-    """The programme that best tells the two effects apart, None if none does; and what all of them tell, as data."""
+    """The programme that best distinguishes the two effects, None if none does; and how well each one does, as data."""
     from pneumo_ros.command.separating import separation_dict, separation_text
     from pneumo_ros.experiment.separate import separate
     from pneumo_ros.experiment.suggestion import best, suggestion

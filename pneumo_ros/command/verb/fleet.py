@@ -1,13 +1,13 @@
 """Examine recordings of many machines: what drifted, and which effect appeared when.
 
-FOLDER holds a folder for each machine, and in it recordings, a campaign for each day, or folders of recordings, a
-campaign each. A campaign with recordings to judge by (names that begin with hold) is diagnosed, and its parameters are
-refitted with the effects that were found; another one is identified from constant voltages. Then parameters are
-compared over time, with their intervals, and effects by when they were found first. A machine.yaml in the folder of a
-machine is its model, else --model.
+FOLDER holds a folder for each machine. That folder holds recordings, which form a campaign for each day, or folders of
+recordings, each of which is a campaign. A campaign with held-out recordings (names that begin with hold) is diagnosed,
+and its parameters are refitted with the effects that were found; any other is identified from constant voltages. Then
+the parameters are compared over time, with their intervals, and each effect is dated by when it was found first. A
+machine.yaml in the folder of a machine is its model; without it, --model is.
 
-Campaigns are examined side by side, on processes or a Dask cluster. With --results they are kept as they come: the same
-command goes on where it was interrupted, and examines only what is new the next night.
+Campaigns are examined in parallel, on processes or a Dask cluster. --results keeps each result when it is ready: the
+same command continues after an interruption, and later examines only new campaigns.
 """
 
 import argparse
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="FOLDER", help="with a folder for each machine")
     add_executor(parser)
     parser.add_argument("--results", metavar="FILE", help="keep what is computed, and do not compute it again")
-    parser.add_argument("--identify-only", action="store_true", help="look for no effects: much faster")
+    parser.add_argument("--identify-only", action="store_true", help="do not look for effects: much faster")
     add_model(parser)
     add_report(parser)
     add_output(parser)
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.note(f"Passed over: {reason}")
     options.bags = [str(path) for campaign in found for path in campaign.paths]
     report = prepare_report(options)
-    chosen_model(options)  # what is wrong with it is told before anything is computed
+    chosen_model(options)  # a wrong machine file is reported before anything is computed
     with ExitStack() as stack:
         journal = stack.enter_context(_journal(options)) if options.results else None
         examined = _examined(found, options, console, journal)

@@ -1,10 +1,10 @@
 """Identify friction and flow coefficients from constant-voltage runs, with intervals, and write the machine file.
 
-Stretches of constant velocity and constant pressures are found in the recordings, of whatever length they are. There
-the pressures give the friction force: the static map, from which Coulomb friction and drag follow. Static friction and
-Stribeck velocity follow from the force at which the piston breaks away and from how it moves off, the flow coefficients
-from the mass balance, the bristle stiffness from presliding. What the recordings do not show keeps its value, and a
-sentence says so; the exit code is then 1. A folder of recordings stands for all in it.
+The command finds stretches of constant velocity and constant pressures in the recordings. There the pressures give the
+friction force: the static map, which gives Coulomb friction and drag. Static friction and Stribeck velocity come from
+the force at which the piston breaks away and from how it starts to move, the flow coefficients from the mass balance,
+the bristle stiffness from presliding. A parameter that the recordings do not determine keeps its value, a sentence says
+so, and the exit code is 1. BAG may be a folder: all recordings in it are read.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""A quick look at recordings in the terminal: what is in them, how each signal goes, and what is wrong with them.
+"""Look at recordings in the terminal: what they contain, each signal over time, and what is wrong with them.
 
 BAG may be a folder of recordings. Exit code 3 when none of them can be read.
 """

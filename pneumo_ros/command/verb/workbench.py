@@ -1,8 +1,8 @@
 """Open the workbench: a local web page to see where a model fails, tick an effect, and watch the error fall.
 
-The page is served on this machine alone, at the address that is printed, with a token that nobody else knows; Ctrl-C
-ends it, and with it whatever it was computing. BAG may be a folder of recordings; those called hold... are held out.
-Everything it computes is a verb of this command, which it names.
+The page is served on this computer only, at the printed address with a secret token. Ctrl-C ends it and all that it
+computes. BAG may be a folder of recordings; recordings whose names begin with hold are held out. Everything that the
+page computes is a verb of this command, and it shows the command line.
 """
 
 import argparse

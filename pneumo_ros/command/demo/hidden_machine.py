@@ -42,7 +42,7 @@ POSITION_NOISE, POSITION_STEP, PRESSURE_NOISE, PRESSURE_STEP = 5e-6, 1e-5, 300.0
 
 def second_simulator() -> Path | None:
     """The folder of the simulator that shares no code with the package, where this runs from a checkout."""
-    folder = Path(__file__).parents[2] / "test" / "rig"
+    folder = Path(__file__).parents[3] / "test" / "rig"
     return folder if (folder / "__main__.py").is_file() else None
 
 

@@ -1,4 +1,4 @@
-"""Whether a diagnosis is right, once the truth is told."""
+"""Whether a diagnosis is right, once the truth is known."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from itertools import permutations
 LARGEST_GROUP = 3  # effects that an answer may leave open and still be one
 
 EXACT, GROUP, VAGUE, MISSED, FALSE, WRONG = "exact", "group", "vague", "missed", "false addition", "wrong"
-Addition = tuple[str, Sequence[str]]  # an effect that was added, and what the recordings cannot tell it from
+Addition = tuple[str, Sequence[str]]  # an effect that was added, and its rivals, which explain as much
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Judgement:
         return self.word in (EXACT, GROUP)
 
     def sentence(self) -> str:
-        """What a person is told."""
+        """The judgement as a sentence."""
         said = {
             EXACT: "The diagnosis is right.",
             GROUP: f"The diagnosis is right: it leaves {_listed(self.grouped)} open among at most {LARGEST_GROUP}.",
-            VAGUE: f"The diagnosis says too little: {_listed(self.vague)} is one of many it cannot tell apart.",
+            VAGUE: f"The diagnosis says too little: {_listed(self.vague)} is one of many that it cannot distinguish.",
             MISSED: f"The diagnosis is wrong: it missed {_listed(self.missed)}.",
             FALSE: f"The diagnosis is half right: it also added {_listed(self.false)}, which is not there.",
         }

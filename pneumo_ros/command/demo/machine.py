@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from pneumo_ros.command.console import Console, program
-from pneumo_ros.command.hidden_machine import record_machine
-from pneumo_ros.command.revealing import judge
+from pneumo_ros.command.demo.hidden_machine import record_machine
+from pneumo_ros.command.demo.revealing import judge
 from pneumo_ros.errors import PneumoError
 
 INTERRUPTED = 130
