@@ -1,4 +1,4 @@
-"""A plant that only asks: joint states at a steady rate, and how long each waits for its valve command."""
+"""A plant without dynamics: joint states at a steady rate, and how long each waits for its valve command."""
 
 import threading
 import time
@@ -49,15 +49,15 @@ class Asking:
         self._answered.set()
 
     def ready(self) -> bool:
-        """Whether a controller hears and answers."""
+        """Whether a controller receives joint states and answers."""
         heard, count = self._publisher.get_subscription_count(), self._node.count_publishers("valve/command")
         return bool(heard and count)
 
     def ask(self, seconds: float) -> tuple[Array, int, float]:
         """Waiting times [s] of joint states sent for `seconds`, how many got no answer in time, and their rate [Hz].
 
-        The next one is sent when its time has come and the one before is answered or given up: so every command is
-        known by the joint state that caused it. What a busy machine leaves behind is not made up for.
+        The next one is sent when it is due and the one before is answered or given up: so the cause of every command
+        is known. Joint states that a busy machine sends late are not made up for.
         """
         waits, lost, begin = [], 0, time.monotonic_ns()
         deadline, end = begin, begin + round(seconds * 1e9)

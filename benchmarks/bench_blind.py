@@ -2,12 +2,12 @@
 
 Each seed is a machine worn by 5 %, with other excitation and noise. `single` hides one effect of the catalogue, in one
 of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides an effect
-that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy` those of a machine with a coloured force and
+that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy`: the same, but with a coloured force and
 a friction texture that no model has. Tables show rates with 95 % intervals (Wilson), and the targets beside them.
 
     python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--jobs 2]
 
-Results go to a file as they come, one line of JSON each. Cases that it already holds for the same code are not run
+Each result is appended to a file as one line of JSON. Cases that it already holds for the same code are not run
 again, so that an interrupted run continues. `--seeds 0` prints the tables of the results there are; --code those of
 other code.
 """
@@ -45,12 +45,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=2, help="cases side by side (default 2)")
     parser.add_argument("--executor", metavar="NAME", help="such as dask=tcp://HOST:PORT, in place of --jobs")
     parser.add_argument("--json", type=Path, default=ROOT / ".cache" / "blind.jsonl", metavar="FILE", help="results")
-    parser.add_argument("--code", help="tables of results of this code (default: of the code that is here)")
+    parser.add_argument("--code", help="print results of this code (default: the present code)")
     return parser.parse_args()
 
 
 def wanted(options: argparse.Namespace) -> list[Job]:
-    """The cases asked for, seed by seed, so that an interrupted run has some of every kind."""
+    """The requested cases, seed by seed, so that an interrupted run has some of every kind."""
     kinds = KINDS if options.kind == "all" else (options.kind,)
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     same = options.strength
@@ -62,7 +62,7 @@ def wanted(options: argparse.Namespace) -> list[Job]:
 
 
 def stored(path: Path) -> dict[Key, dict[str, Any]]:
-    """Results in the file; a last line that was cut off is passed over."""
+    """Results in the file; an incomplete last line is skipped."""
     found: dict[Key, dict[str, Any]] = {}
     for line in path.read_text().splitlines() if path.exists() else ():
         try:
@@ -83,7 +83,7 @@ def run_case(*job: object) -> tuple[str, str]:
 
 
 def make_pool(options: argparse.Namespace) -> Pool:
-    """Threads, for each case has a process of its own anyway; or what --executor asks for."""
+    """Threads, because each case has its own process anyway; or the executor of --executor."""
     if options.executor:
         return open_pool(options.executor)
     return Pool(lambda: ThreadPoolExecutor(options.jobs), options.jobs)

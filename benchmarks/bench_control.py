@@ -63,7 +63,7 @@ def _settled(ends: list[Arrival], tolerance: float) -> str:
 
 
 def _targets() -> None:
-    """The nominal figures beside what they should be."""
+    """The nominal figures beside their targets."""
     print(
         f"nominal, the same sine with {len(SEEDS)} draws of the noise (targets: at most 1.50 mm, at least 3.0 x better)"
     )
@@ -144,7 +144,7 @@ def step_time() -> None:
 
 
 def _replayed(name: str, shown: np.ndarray) -> np.ndarray:
-    """Times [us] of the steps that answer the same measurements again, without the plant in between."""
+    """Times [us] of the steps for the same measurements again, without the plant."""
     law, taken = shipped(name), np.empty(len(shown))
     for k, (t, y, a, b) in enumerate(shown.tolist()):
         wanted, seen = SINE(t), Measurement(t, y, None, a, b)

@@ -1,8 +1,8 @@
-"""What the tests notice: small faults, made one at a time in a copy of a checkout, and which test fails for each.
+"""Which faults the tests notice: each is made alone in a copy of a checkout, and the test that fails is named.
 
 The faults are those of benchmarks/faults.yaml. For each the tests that mirror its place run first, then wider ones, up
 to the first that fails; a failure counts when the same test passes without the fault. Results are kept in a file by
-commit and fault: a call that ran out of time is continued by the next. Give the options with which `make test` calls
+commit and fault: the next call continues one that ran out of time. Give the options with which `make test` calls
 pytest, if it leaves tests out.
 
     python benchmarks/bench_faults.py [--tree .] [--minutes 20] [--only WORDS] [--pytest "-m 'not check'"]
@@ -33,10 +33,8 @@ def arguments() -> argparse.Namespace:
     """The options."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tree", type=Path, default=HERE.parent, help="checkout to test, as committed (default: this)")
-    parser.add_argument(
-        "--results", type=Path, default=HERE.parent / ".cache" / "faults.json", help="JSON to go on with"
-    )
-    parser.add_argument("--minutes", type=float, default=20.0, help="no fault is begun after so long (default 20)")
+    parser.add_argument("--results", type=Path, default=HERE.parent / ".cache" / "faults.json", help="JSON to continue")
+    parser.add_argument("--minutes", type=float, default=20.0, help="time after which no fault is started (default 20)")
     parser.add_argument("--only", default="", help="faults with these words in their name, or in a pattern of tests")
     parser.add_argument("--again", action="store_true", help="repeat those that were not noticed")
     parser.add_argument("--pytest", type=shlex.split, default=[], help="further options of pytest")

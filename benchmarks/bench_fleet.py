@@ -1,8 +1,8 @@
-"""What a fleet costs: campaigns identified on one process and on several, and diagnosed; a night of 10,000 machines.
+"""The cost of a fleet: campaigns identified on one process and on several, and diagnosed; 10,000 machines in a night.
 
-Recordings are made of the default machine, 6 s at 250 Hz, a constant voltage each; a campaign is one of them, so that
-the curve is that of recordings. Worker processes start within the measured time: Python, libraries, compiled kernels.
-The diagnosis is that of the recordings of a rig, healthy and with a leak, if $PNEUMO_RIG names their folder.
+Recordings are of the default machine, 6 s at 250 Hz, one constant voltage each; a campaign is one recording, so that
+the curve is the cost over recordings. The measured time includes the start of workers: Python, libraries, kernels.
+The diagnosis uses recordings of a rig, healthy and with a leak, if $PNEUMO_RIG names their folder.
 
     python benchmarks/bench_fleet.py [--most 64] [--processes 2] [--no-diagnosis]
 """
@@ -26,7 +26,7 @@ def arguments() -> argparse.Namespace:
     """The options."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--most", type=int, default=64, help="recordings of the last row (default 64)")
-    parser.add_argument("--processes", type=int, default=2, help="beside one (default 2)")
+    parser.add_argument("--processes", type=int, default=2, help="number compared with one (default 2)")
     parser.add_argument("--no-diagnosis", action="store_true", help="only identify")
     return parser.parse_args()
 
@@ -106,7 +106,7 @@ def main() -> int:
     options = arguments()
     with tempfile.TemporaryDirectory() as folder:
         paths = recorded(Path(folder))
-        swept(paths, 1, "one")  # compiles what is not compiled yet
+        swept(paths, 1, "one")  # compiles the kernels that are missing
         print(f"{os.cpu_count()} processors")
         each = curve(options, paths, lambda text: print(text, flush=True))
         lines = [night("a recording identified", each)]

@@ -1,7 +1,7 @@
-"""Identification on the paper's machine with sensor noise: errors, and how often the intervals hold the truth.
+"""Identification on the paper's machine with sensor noise: errors, and how often the intervals contain the true value.
 
 Fourteen constant-voltage runs of 8 s at 1 kHz (10 um, 300 Pa), repeated over noise seeds. Prints, per parameter, the
-largest error, the share of seeds whose 95 % interval holds the truth, and how often it was declared undetermined;
+largest error, the share of seeds whose 95 % interval contains the true value, and how often it was undetermined;
 then the time of one identification.
 
     python benchmarks/bench_identify.py [--seeds 40]
@@ -38,7 +38,7 @@ def campaign(model: Model) -> list[tuple[str, np.ndarray, np.ndarray]]:
 
 
 def measured(runs: list[tuple[str, np.ndarray, np.ndarray]], seed: int) -> list[Run]:
-    """The same runs as sensors would show them."""
+    """The same runs with sensor noise."""
     rng = np.random.default_rng(seed)
     return [
         Run(

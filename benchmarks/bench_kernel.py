@@ -1,4 +1,4 @@
-"""The plant's kernel against a hand-written C loop, and what it costs to compile and to start it.
+"""The plant's kernel against a hand-written C loop, and the time to compile and to start it.
 
 One step of 100 us of the base machine: ours, and reference_axis.c (classical Runge-Kutta, gcc -O3 -march=native,
 compiled here). Both follow the same voltages; before timing, both are compared with a run in steps of 10 us.
@@ -64,7 +64,7 @@ def compile_loop(folder: str) -> Callable[[np.ndarray, np.ndarray, np.ndarray, i
 
 
 def start_of(model: Model) -> np.ndarray:
-    """Every run begins here, the forces on the piston nearly balanced."""
+    """Initial state of every run: the forces on the piston nearly balance."""
     return model.state(y=-0.9, p_a=3e5, p_b=3.73e5)
 
 

@@ -1,9 +1,9 @@
 """The nodes against the clock: real-time factor, late ticks, processor time and answers at 1 kHz; lockstep.
 
-Every row is a run of real processes in a ROS domain of their own (but for the last, which has no ROS in it). Processor
+Every row is a run of real processes in a ROS domain of their own (except the last, which runs without ROS). Processor
 time is that of the whole process, all threads, as a share of one core. A tick is late when it begins more than 1 ms
-after its deadline. An answer takes from a joint state, as it is sent, to its valve command, as it arrives: both ways
-through the middleware and the control step between, so more than a command needs to reach the plant. Lockstep runs the
+after its deadline. An answer lasts from the sending of a joint state to the arrival of its valve command: both ways
+through the middleware plus the control step, so longer than a command needs to reach the plant. Lockstep runs the
 default machine under PID control along a sine.
 
     python benchmarks/bench_nodes.py [--seconds 60] [--answer-seconds 20] [--lockstep-seconds 10] [--rate 1000]
@@ -28,7 +28,7 @@ LOCKSTEP = ("-p", "real_time_factor:=0.0")
 
 
 class Listener:
-    """Collects what the simulator says on /diagnostics: wall time of the message [s], numbers by name."""
+    """Collects the simulator's /diagnostics: wall time of the message [s], numbers by name."""
 
     def __init__(self) -> None:
         # in the ROS domain that the environment names by now
@@ -50,7 +50,7 @@ class Listener:
                 self.heard.append((stamp, {pair.key: float(pair.value) for pair in status.values}))
 
     def listen(self, seconds: float) -> list[tuple[float, dict[str, float]]]:
-        """What is heard in the next `seconds`."""
+        """The messages of the next `seconds`."""
         self.heard = []
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:

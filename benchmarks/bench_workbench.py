@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def long_recording(path: Path) -> Path:
-    """Ten minutes at 1 kHz with the noise of sensors; the motion is invented."""
+    """Ten minutes at 1 kHz with sensor noise; the motion is artificial."""
     rng, time_ = np.random.default_rng(1), np.arange(SAMPLES) * 1e-3
     swing = np.sin(0.7 * time_) * np.sin(0.011 * time_)
     pressures = [3e5 + sign * 1.5e5 * swing + rng.normal(0.0, 300.0, SAMPLES) for sign in (1.0, -1.0)]

@@ -2,7 +2,7 @@
 
     python benchmarks/blind_case.py KIND SEED STRENGTH
 
-prints one line of JSON: the truth, what was found, what it cost. Each case has its own process, and so its own peak of
+prints one line of JSON: the truth, the result, the cost. Each case has its own process, and so its own peak of
 memory.
 """
 
@@ -48,7 +48,7 @@ def drawn_strength(kind: str, seed: int) -> float:
 
 
 def drawn_shape(seed: int, salt: int) -> str:
-    """Every catalogue name once in as many seeds, in an order and a shape that are drawn."""
+    """Every catalogue name once in as many seeds, in random order and with a random shape."""
     from rig.effects import EFFECTS, OUTSIDE
 
     shapes: dict[str, list[str]] = {}
@@ -94,7 +94,7 @@ def recorded(case: Any) -> list[Any]:
 
 
 def found(outcome: Any) -> dict[str, Any]:
-    """What is kept of an outcome."""
+    """The part of an outcome that is kept."""
     left = outcome.unexplained
     return {
         "verdict": outcome.verdict,

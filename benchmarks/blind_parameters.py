@@ -1,4 +1,4 @@
-"""True values of catalogue parameters, from the fields of the rig's machine, where both mean the same by them."""
+"""True values of catalogue parameters, from the rig's fields of the same meaning."""
 
 from collections.abc import Callable, Mapping
 from math import pi, sqrt
@@ -24,7 +24,7 @@ def _tank_time(m: Fields) -> float:
 _DROOP: Truths = {"resistance_supply": lambda m: m["feed"], "time_constant": _tank_time}
 _LEAKS: Truths = {"conductance_a": lambda m: m["leak_a"], "conductance_b": lambda m: m["leak_b"]}
 
-# By the rig's name of the shape. Other shapes have another equation than the catalogue, and only names to compare.
+# By the rig's name of the shape. Other shapes have another equation than the catalogue; only names can be compared.
 TRUE: dict[str, Truths] = {
     "viscous_friction": {"coefficient": lambda m: m["viscous_out"]},
     "asymmetric_friction": {"ratio": lambda m: m["retract_excess"]},

@@ -33,7 +33,7 @@ def rate(hits: int, of: int) -> str:
 
 
 def judgement(result: Result) -> Judgement:
-    """The judge's verdict on a case of catalogue effects; all that is added to another kind is false."""
+    """The judge's verdict on a case of catalogue effects; in other kinds every added effect is false."""
     names = [hidden["effect"] for hidden in result["hidden"] if hidden["in_catalogue"]]
     return judge(names, additions(result))
 
@@ -93,7 +93,7 @@ def empty_table(results: Sequence[Result]) -> str:
 
 
 def right_equation(result: Result) -> bool:
-    """Whether what remains is shown in an equation that the hidden effect enters."""
+    """Whether the remaining misfit is reported in an equation that contains the hidden effect."""
     left = result["unexplained"]
     return bool(left) and left["equation"] in result["hidden"][0]["equations"]
 
@@ -120,7 +120,7 @@ def outside_table(results: Sequence[Result]) -> str:
 
 
 def confusion_table(results: Sequence[Result]) -> str:
-    """Truth by what was found for it; additions without a match are shown beside missed effects, or alone."""
+    """Hidden effects against found ones; additions without a match are shown beside missed effects, or alone."""
     seen: dict[str, Counter[str]] = defaultdict(Counter)
     for result in results:
         names, added = [hidden["effect"] for hidden in result["hidden"]], additions(result)
@@ -143,7 +143,7 @@ def confusion_table(results: Sequence[Result]) -> str:
 
 
 def failures(results: Sequence[Result]) -> str:
-    """Every case that is not right, by effect, with what repeats it."""
+    """Every case that is not right, by effect, with the arguments that repeat it."""
     lines = ["not right"]
     for result in sorted(results, key=lambda r: ([h["shape"] for h in r["hidden"]], r["kind"], r["seed"])):
         outside = result["kind"] == "outside"

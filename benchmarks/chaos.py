@@ -1,8 +1,8 @@
 """Faults at random, in real processes: simulator, controller, recorder, identification, player and workbench.
 
-Processes are killed, stopped and doubled, messages come at 10 kHz, without numbers, too large or from another time,
-disks are full or read only, parameters are turned at random. After each fault everything must speak again, with
-numbers; valves must have closed, recordings be whole, and `kill -9` must have cost no more than a second of one.
+Processes are killed, stopped and doubled; messages come at 10 kHz, with NaN, too large or with wrong stamps;
+disks are full or read only, parameters change at random. After each fault every node must publish finite
+numbers; valves must have closed, recordings must be whole, and `kill -9` may cost one second of a recording.
 
     python benchmarks/chaos.py [--faults 300] [--minutes 60] [--seed 1] [--only WORD]
 
@@ -22,7 +22,7 @@ def arguments() -> argparse.Namespace:
     """The options."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--faults", type=int, default=300, help="in all (default 300)")
-    parser.add_argument("--minutes", type=float, default=60.0, help="after which none begins (default 60)")
+    parser.add_argument("--minutes", type=float, default=60.0, help="time after which no fault starts (default 60)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", metavar="WORD", help="faults whose name has this word in it")
     return parser.parse_args()

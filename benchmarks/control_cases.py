@@ -21,7 +21,7 @@ STEPS = moves(LEVELS, HOLD, 1.0)
 
 
 def with_effect(effect: str, **values: float) -> Model:
-    """The default machine with one effect more."""
+    """The default machine with one more effect."""
     return AXIS.with_effects([*AXIS.effects, effect], {f"{effect}.{name}": value for name, value in values.items()})
 
 
@@ -38,7 +38,7 @@ PLANTS = {
 
 
 def shipped(law: str, known: Model = AXIS) -> Law:
-    """The law with the gains that come with the package, knowing the machine `known`."""
+    """The law with the package's gains, based on the machine `known`."""
     return load_control(law).make(known.effects, known.parameters)
 
 
@@ -50,7 +50,7 @@ def own(file: str, known: Model) -> Law:
 def follow(
     plant: Model, law: Law, reference: Reference, seconds: float, seed: int = 0, noisy: bool = True
 ) -> tuple[Record, np.ndarray]:
-    """The run, and what the sensors showed of it: time, position, pressures (samples, 4)."""
+    """The run, and its sensor signals: time, position, pressures (samples, 4)."""
     sensors = NoisySensors(NOISE_POSITION * noisy, NOISE_PRESSURE * noisy, seed)
     shown: list[tuple[float, ...]] = []
 

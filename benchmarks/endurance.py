@@ -1,7 +1,7 @@
 """Endurance: a day of simulated time with its balances, and minutes of real time at 1 kHz with every message recorded.
 
 The model: random voltages drive the piston to random places. Over each part the change of the gas in a chamber must
-equal what came in through its port (d(p V) + (gamma - 1) p dV = gamma R T q dt), and the energy of the piston must
+equal the inflow through its port (d(p V) + (gamma - 1) p dV = gamma R T q dt), and the energy of the piston must
 change by the work of the pressures less that of friction. Residuals are relative to the amount exchanged; memory must
 not grow.
 
@@ -49,7 +49,7 @@ class Balances:
         self.off, self.through = np.zeros(3), np.zeros(3)  # chamber a, chamber b [J], piston [J]
 
     def add(self, x: np.ndarray, seen: dict[str, np.ndarray]) -> None:
-        """A piece of states (n, nx) and outputs at its samples, the first being where the last piece ended."""
+        """A piece of states (n, nx) and outputs at its samples; the first sample ended the previous piece."""
         model, y, v = self.model, x[:, 0], x[:, 1]
         gamma, heat = model["air.heat_capacity_ratio"], model["air.gas_constant"] * model["air.temperature"]
         for k, (side, sign) in enumerate((("a", 1.0), ("b", -1.0))):
@@ -144,7 +144,7 @@ def recorded(minutes: float) -> bool:
 
 
 def late(diagnostics: Any) -> str:
-    """How many ticks of the simulator were late in each part of the recording, of how many."""
+    """Late ticks and all ticks of the simulator in each part of the recording."""
     said = [one for array in diagnostics["status"] for one in array if one.name == "simulator"]
     counts = np.array([[int({v.key: v.value for v in one.values}[key]) for key in ("late_ticks", "ticks")]
                        for one in said])  # fmt: skip

@@ -1,4 +1,4 @@
-"""A copy of a checkout in which one fault at a time is made, and tests run against it within a time."""
+"""A copy of a checkout that gets one fault at a time, and its tests with a time limit."""
 
 import os
 import re
@@ -38,7 +38,7 @@ class FaultyCopy:
             shutil.copytree(compiled, self._kernels())
 
     def place_of(self, wordings: Sequence[str]) -> tuple[Path, str]:
-        """The file that holds one of `wordings`, and which. Raises LookupError unless it occurs exactly once."""
+        """The file with one of `wordings`, and that wording. LookupError unless it occurs exactly once."""
         for text in wordings:
             found = [(path, path.read_text(encoding="utf-8").count(text)) for path in self._searched()]
             count = sum(times for _, times in found)
@@ -70,9 +70,9 @@ class FaultyCopy:
             os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
 
     def sound(self, test: str, seconds: float) -> bool:
-        """Whether a test passes where there is no fault; without that, its failure says nothing.
+        """Whether a test passes without the fault; otherwise its failure proves nothing.
 
-        Where the fault has made the case, its test counts with the cases that there are.
+        A parametrized case that exists only with the fault is judged by the test's existing cases.
         """
         if test not in self._sound:
             code = self._pytest([test], seconds, self._kernels()).code

@@ -1,4 +1,4 @@
-"""A fleet over weeks, made by the simulator under test/ that shares no code with the package: whose leak grows?
+"""A fleet over weeks, made by the independent simulator under test/rig: which machine's leak grows?
 
 One machine's piston seal leaks more from week to week, the other machine stays as it is; both are recorded with other
 motions and other noise every week. Then `pneumo fleet` runs, which knows only the default machine.

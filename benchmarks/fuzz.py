@@ -2,8 +2,8 @@
 
 Inputs are drawn by property-based testing: recordings, databases and texts with random damage, and grammars of files
 that are nearly right. A traceback, a message of more than 2000 characters, a warning of Python, 10 s of a processor,
-1 GB, or a file that code in an input has made counts as broken. Then a recording is cut at random places: every message
-of a whole chunk before the cut must be read, and nothing that the uncut file does not hold.
+1 GB, or a file made by code in an input counts as broken. Then a recording is cut at random places: every message
+of a whole chunk before the cut must be read, and nothing that the uncut file does not contain.
 
     python benchmarks/fuzz.py [--inputs 100000] [--cuts 500] [--seed 1] [--only WORD]
 

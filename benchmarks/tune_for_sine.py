@@ -1,6 +1,6 @@
 """Finds pid_for_sine.yaml and cascade_for_sine.yaml: the search of `pneumo tune`, on the sine of the benchmark alone.
 
-`pneumo tune` looks for gains that suit moves and a harsher machine as well, so that its gains are not the best for this
+`pneumo tune` also considers moves and a harsher machine, so that its gains are not the best for this
 sine. Here PID and the cascade get the best gains for the sine, on exactly the machine of their file.
 
     python benchmarks/tune_for_sine.py
@@ -21,7 +21,7 @@ ALONE = Trial(partial(stepper, AXIS), SINE, 24.0, 4.0)  # the first fifth of a p
 
 
 def found(law: str) -> Control:
-    """The law with the gains that the search finds, from the shipped ones."""
+    """The law with the gains found by a search that starts at the shipped ones."""
     begin = load_control(law)
 
     def make(gains: Mapping[str, float]) -> Law:

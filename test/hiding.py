@@ -1,4 +1,4 @@
-"""A Python in which some modules seem not to be installed."""
+"""A Python in which some modules seem to be missing."""
 
 import os
 from pathlib import Path
@@ -28,7 +28,7 @@ sys.meta_path[:] = [Hiding if finder is PathFinder else finder for finder in sys
 def environment_without(folder: Path, *modules: str) -> dict[str, str]:
     """Environment for a child Python that does not find `modules`; hiding rclpy hides the messages too.
 
-    `folder` takes the file that does it.
+    The file that hides them is written to `folder`.
     """
     (folder / "sitecustomize.py").write_text(PROGRAM.format(hidden=set(modules)), encoding="utf-8")
     paths = [str(folder), str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")]

@@ -1,4 +1,4 @@
-"""What the benchmarks assume of the tree."""
+"""Assumptions of the benchmarks about the tree."""
 
 import re
 from pathlib import Path
@@ -21,7 +21,7 @@ def rooms_below(room: str) -> set[str]:
 
 
 def test_results_of_blind_cases_belong_to_all_the_code_that_a_diagnosis_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Results are kept by a hash of the code: a room that is left out would give results of other code."""
+    """Results are stored under a hash of the code: with a missing room they could be those of other code."""
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     import blind_case
 

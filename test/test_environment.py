@@ -1,4 +1,4 @@
-"""Missing pieces get one sentence with the command that helps, and programs get a ROS domain of their own."""
+"""Missing software gives one sentence with the remedy, and programs get a ROS domain of their own."""
 
 import socket
 import subprocess

@@ -88,6 +88,6 @@ def test_a_folder_is_never_overwritten(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("value", [0.0, 1.0, -0.1, 1e-5, 4.1e-4, 1e16, -2.5e20, 1.7976931348623157e308, 5e-324])
 def test_numbers_stay_numbers_in_yaml(value: float) -> None:
-    """YAML 1.1 takes 1e-5 and 1.0e20 for text: it needs a point, and a sign before the exponent."""
+    """YAML 1.1 reads 1e-5 and 1.0e20 as text: it needs a point, and a sign before the exponent."""
     assert yaml.safe_load(yaml_number(value)) == value
     assert isinstance(yaml.safe_load(yaml_number(value)), float)

@@ -28,7 +28,7 @@ def test_bad_input_is_answered_in_words(parser: Parser, tmp_path: Path, monkeypa
 
 @pytest.mark.parametrize("parser", PARSERS, ids=lambda parser: parser.name)
 def test_an_unspoilt_file_is_read(parser: Parser, tmp_path: Path) -> None:
-    """Else the campaign would pass with parsers that refuse everything."""
+    """Otherwise the campaign would pass with parsers that refuse everything."""
     verdict = judging.judge(parser, parser.sound(), tmp_path)
     assert (verdict.kind, verdict.words) == (judging.RESULT, "")
 

@@ -1,4 +1,4 @@
-"""Texts of the project: the README starts with two commands, figures come with theirs, and nothing is private."""
+"""Texts of the project: the README starts with two commands, figures name their command, nothing is private."""
 
 import re
 import subprocess
@@ -7,13 +7,13 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TEXT = (".py", ".md", ".rst", ".toml", ".cfg", ".xml", ".yaml", ".yml", ".txt", ".sh", ".c", "")
-# Paths of one machine, and a home folder other than the reader's
+# Paths of one machine, and home folders of other users
 MACHINE_PATHS = re.compile(r"(?<![\w.$})<])/(work|tmp|root|home/\w+|opt/pypi)\b")
 PRIVATE = re.compile(r"\b(issue #?\d+|pypi[-.]\w+/simple)\b", re.IGNORECASE)
 
 
 def project_files() -> list[Path]:
-    """Text files of the project: those git knows, or those of the folder where there is no git."""
+    """Text files of the project: those in git, or those of the folder without git."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
     if listed.returncode == 0 and listed.stdout:
         paths = [ROOT / name for name in listed.stdout.split("\0") if name]
@@ -23,7 +23,7 @@ def project_files() -> list[Path]:
 
 
 def private_words(path: Path) -> list[str]:
-    """Where a file names one machine or what is not for its readers: file, line and word."""
+    """Places where a file names one machine or private things: file, line and word."""
     lines = path.read_text(encoding="utf-8").splitlines()
     found = (
         (k, match[0]) for k, line in enumerate(lines, 1) for p in (MACHINE_PATHS, PRIVATE) for match in p.finditer(line)

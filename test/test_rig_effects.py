@@ -1,4 +1,4 @@
-"""Every effect of the rig: it is there, it is finite and resolved, and it does what physics says it does."""
+"""Every effect of the rig: it has an influence, is finite and resolved, and follows the physics."""
 
 import functools
 import math
@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 AT_SENSORS = {*effects.SENSORS, "backlash"}
 AT_ENDS = {"cushioning"}
 IN_MOTION = [name for name in effects.EFFECTS if name not in AT_SENSORS | AT_ENDS]
-OTHER_LAWS = {"choked_flow", "heat_exchange"}  # no size of theirs gives the base's law back
+OTHER_LAWS = {"choked_flow", "heat_exchange"}  # no size of theirs gives the base law
 MANOEUVRE = np.concatenate([np.full(400, 2.0), np.full(1000, -2.5), np.zeros(200), np.full(400, 0.95)])
 BASE = Machine()
 COARSE = 4e-5  # s, twice the step of recordings
@@ -219,7 +219,7 @@ def steady(machine, volts=2.0):
 def test_force_of_an_effect_shows_in_the_balance_of_a_slide(name, size, force):
     _, v, p_a, p_b, _ = steady(hidden(name, size))
     gas_force = BASE.area_a * p_a - BASE.area_b * p_b - BASE.atmosphere * (BASE.area_a - BASE.area_b)
-    slowing = 0.3  # N: what is left of the acceleration
+    slowing = 0.3  # N: remaining inertia force
     assert v > 0.1
     assert gas_force - BASE.coulomb - BASE.drag * v**2 == pytest.approx(force(v, 0.0, (p_a, p_b)), abs=slowing)
 
@@ -292,7 +292,7 @@ def test_loose_encoder_waits_at_reversals():
 @pytest.mark.parametrize(
     ("field", "value", "slope", "offset"), [("offset_a", 1e4, 1.0, 1e4), ("gain_a", 0.02, 1.02, 0.0)]
 )
-def test_pressure_sensor_is_off_by_what_it_is_told(field, value, slope, offset):
+def test_pressure_sensor_is_off_by_the_given_value(field, value, slope, offset):
     run_ = recorded(BASE._replace(**{field: value}))
     error = run_.pressure_a - (slope * run_.truth[:, 2] + offset)
     assert error.mean() == pytest.approx(0.0, abs=50.0)

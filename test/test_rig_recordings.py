@@ -1,4 +1,4 @@
-"""Recordings of the rig: what is in them, what their noise is, and that a seed repeats them."""
+"""Recordings of the rig: their content, their noise, and repetition by the seed."""
 
 import json
 import os
@@ -209,9 +209,9 @@ def test_wrong_wishes_are_answered(arguments, answer, tmp_path, capsys):
     not RECORDED.is_dir(), reason="no recordings of the rig beside the checkout (PNEUMO_RIG names them)"
 )
 class TestAgainstTheRecordedRig:
-    """In the large: the same machine up to wear, the same sensors, the same layout of the recording."""
+    """Rough agreement: the same machine except for wear, the same sensors, the same layout of the recording."""
 
-    # not those at 0.785 and 0.8 V: how fast they creep is a matter of the worn dead zone
+    # not those at 0.785 and 0.8 V: their creep speed depends on the worn dead zone
     @pytest.mark.parametrize("name", [name for name in excitation.ALL_RUNS if name.startswith("constant_")][4:])
     def test_constant_runs_end_alike(self, name):
         values = read(RECORDED / name)[1]

@@ -1,4 +1,4 @@
-"""YAML that means harm, or would take for ever, is refused in a sentence."""
+"""Malicious or endless YAML is refused with a message."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def test_what_is_refused(text: str, said: str, tmp_path: Path, monkeypatch: pyte
 
 
 def test_a_bomb_of_references_stays_small() -> None:
-    """Nine lists of nine references each: 9^9 words, which nobody may write out."""
+    """Nine lists of nine references each: 9^9 words, which must not be expanded."""
     lines = ["a: &a [x, x, x, x, x, x, x, x, x]"]
     lines += [f"{b}: &{b} [{', '.join([f'*{a}'] * 9)}]" for a, b in zip("abcdefgh", "bcdefghi", strict=True)]
     assert len(brief(load_yaml("\n".join(lines)))) < 1000

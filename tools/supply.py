@@ -1,8 +1,8 @@
-"""What is handed on: wheel and source archive, each installed by pip in an empty environment and run; licences of all.
+"""The delivery: wheel and source archive, each installed by pip in an empty environment and run; licences of all.
 
     python tools/supply.py [--python python3.12 ...]
 
-For every Python named (by default this one) wheel and archive are built, installed with what they depend on, and
+For every Python named (by default this one) wheel and archive are built, installed with their dependencies, and
 `pneumo` simulates and records away from the checkout. Then every distribution that was installed is listed with the
 licence it declares, and `pip-audit` asks for known vulnerabilities of these versions, where its service is reachable.
 The exit code is 1 when something did not run, a licence is none of those known to go with Apache-2.0, or there are
@@ -25,7 +25,7 @@ COMMANDS = (
     ("effects", "lugre_friction"),
     ("simulate", "--input", "step:2.5@0.1", "--seconds", "0.5", "--out", "run"),
     ("simulate", "--input", "run", "--out", "again"),
-)  # the last one reads what the one before wrote
+)  # the last one reads the file of the one before
 LICENCES = r"Apache|BSD|MIT|ISC|PSF|Python Software|MPL|Mozilla|Zlib|Unlicense|Public Domain|any-OSI"
 ASK = """
 import importlib.metadata as m, json
@@ -53,7 +53,7 @@ def run(*command: str | Path, folder: Path) -> str:
 
 
 def build(folder: Path) -> list[Path]:
-    """Wheel and source archive of a copy of the checkout as git knows it."""
+    """Wheel and source archive of a copy of the files in git."""
     tree = folder / "tree"
     tree.mkdir()
     for name in run("git", "ls-files", "-z", folder=ROOT).split("\0"):
@@ -67,7 +67,7 @@ def build(folder: Path) -> list[Path]:
 
 
 def check(python: str, artifact: Path, folder: Path) -> list[tuple[str, str, str]]:
-    """Install and run; name, version and licence of all that was installed."""
+    """Install and run; name, version and licence of every installed distribution."""
     venv, place = folder / "venv", folder / "place"
     place.mkdir(parents=True)
     run(python, "-m", "venv", venv, folder=folder)
@@ -87,7 +87,7 @@ def audit(found: set[tuple[str, str, str]], folder: Path) -> dict[str, list[str]
         command = [venv / "bin" / "pip-audit", "-r", wanted, "--no-deps", "--disable-pip", "-f", "json"]
         said = subprocess.run([*map(str, command)], cwd=folder, env=CLEAN, capture_output=True, text=True).stdout
         answered = [one for one in json.loads(said)["dependencies"] if "skip_reason" not in one]
-    except (subprocess.CalledProcessError, ValueError):  # it ends with 1 for vulnerabilities, and then says them
+    except (subprocess.CalledProcessError, ValueError):  # exit code 1 means vulnerabilities, which it then lists
         return None
     return {f"{one['name']} {one['version']}": [v["id"] for v in one["vulns"]] for one in answered} or None
 

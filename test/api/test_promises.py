@@ -1,4 +1,4 @@
-"""Promises of the public functions themselves: documented, annotated, and no misspelt keyword swallowed."""
+"""Public functions: documented, annotated, and no misspelt keyword is ignored."""
 
 import importlib
 import inspect
@@ -52,7 +52,7 @@ def callables() -> dict[str, Callable[..., Any]]:
 
 
 def written_methods(owner: type) -> Iterator[tuple[str, Callable[..., Any]]]:
-    """Public methods in the source of a class; dataclasses make others up, from annotated fields."""
+    """Public methods in the source of a class; dataclasses generate others from annotated fields."""
     for name, function in vars(owner).items():
         inner = getattr(function, "__func__", function)
         own = inspect.isfunction(inner) and inner.__qualname__ == f"{owner.__qualname__}.{name}"
@@ -94,14 +94,14 @@ def test_functions_are_documented() -> None:
 
 
 def test_classes_are_documented() -> None:
-    """Not only with the docstring that dataclasses make up."""
+    """The generated docstring of a dataclass is not enough."""
     bare = [name for name, one in classes().items() if not (one.__doc__ or "").strip()]
     made_up = [name for name, one in classes().items() if (one.__doc__ or "").startswith(f"{one.__name__}(")]
     assert not bare + made_up
 
 
 def test_no_misspelt_keyword_is_swallowed() -> None:
-    """`**anything` accepts every misspelling in silence; functions that need it must refuse an unknown name."""
+    """`**anything` silently accepts every misspelling; functions that need it must refuse an unknown name."""
     kinds = {name: [p.kind for p in inspect.signature(one).parameters.values()] for name, one in callables().items()}
     catching = [name for name, found in kinds.items() if inspect.Parameter.VAR_KEYWORD in found]
     assert not [name for name in catching if not refuses_unknown_keyword(name)]
@@ -117,7 +117,7 @@ def refuses_unknown_keyword(name: str) -> bool:
 
 
 def call_with_unknown_keyword(name: str) -> None:
-    """Call a function that takes `**anything` with a keyword that it cannot know."""
+    """Call a function that takes `**anything` with an unknown keyword."""
     owner = name.rpartition(".")[0]
     if owner == "pneumo_ros.plant.model.Model":
         from pneumo_ros.plant import load_model

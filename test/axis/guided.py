@@ -1,4 +1,4 @@
-"""A control loop without ROS, and the piston and clock that the test gives it."""
+"""A control loop without ROS, with the piston and clock of the test."""
 
 from pneumo_ros.axis.controller.loop import Loop
 from pneumo_ros.control import Machine, Pid, ValveInverse
@@ -16,7 +16,7 @@ class Run:
         self.go()
 
     def go(self, ticks: int = 1, follow: bool = False) -> float | None:
-        """The last voltage; the piston follows its setpoint exactly if wanted."""
+        """The last voltage; on request the piston follows its setpoint exactly."""
         voltage = None
         for _ in range(ticks):
             self.stamp += TICK

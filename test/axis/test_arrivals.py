@@ -1,4 +1,4 @@
-"""Which bags count as complete: closed ones, and those that nobody writes to any more."""
+"""Which bags count as complete: closed ones, and those that no longer grow."""
 
 import os
 import shutil
@@ -115,7 +115,7 @@ def test_a_changed_bag_gets_another_mark(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"garbage", b"\x89MCAP0\r\n", b"\x89MCAP0\r\n" + bytes(60)])
-def test_what_is_no_mcap_file_is_not_closed(content: bytes, tmp_path: Path) -> None:
+def test_what_is_not_an_mcap_file_is_not_closed(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "broken.mcap"
     path.write_bytes(content)
     assert not closed(path)

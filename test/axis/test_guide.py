@@ -1,4 +1,4 @@
-"""What is asked of the piston, without ROS: modes, refusals, and the loop that survives what comes in."""
+"""The wanted motion, without ROS: modes, refusals, and a loop that survives bad input."""
 
 import math
 
@@ -151,7 +151,7 @@ def test_a_law_that_leaves_the_numbers_sends_0_v() -> None:
     assert run.go() == 10.0
 
 
-def test_old_pressures_are_none() -> None:
+def test_old_pressures_do_not_count() -> None:
     run = moving()
     run.loop.press("a", 3e5)
     run.loop.press("b", math.nan)

@@ -1,4 +1,4 @@
-"""Counting what never arrived by the numbers publishers give their messages."""
+"""Counting lost messages by the sequence numbers of their publishers."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_gaps_are_counted_for_each_publisher() -> None:
     assert lost(("a", 1), ("b", 1), ("a", 4), ("b", 2), ("b", 4)) == 3
 
 
-def test_a_middleware_without_numbers_tells_nothing() -> None:
+def test_a_middleware_without_numbers_counts_no_losses() -> None:
     assert lost(("a", None), ("a", None)) == 0
 
 

@@ -1,4 +1,4 @@
-"""When messages are due, which come first, and what is left out: without ROS."""
+"""Due times of messages, their order, and which are left out: without ROS."""
 
 import time
 from itertools import count
@@ -65,7 +65,7 @@ def test_no_message_comes_before_its_time(bag: Bag) -> None:
     Playback(bag, bag.overview(), lambda topic: True, 5.0, 0.0).play(
         lambda one: arrived.append((time.monotonic_ns(), one)), None
     )
-    begun, _ = arrived[0]  # the description, which comes at once
+    begun, _ = arrived[0]  # the description, which is sent at once
     for at, message in arrived[1:]:
         assert at - begun >= (message.log_time - START) / 5.0
 
@@ -102,7 +102,7 @@ def test_reading_ahead_changes_nothing(items: int) -> None:
     assert list(ahead(range(items), batches=2)) == list(range(items))
 
 
-def test_reading_ahead_tells_what_went_wrong() -> None:
+def test_reading_ahead_reports_errors() -> None:
     def broken() -> object:
         yield 1
         raise OSError("the disk is gone")

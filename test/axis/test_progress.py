@@ -1,4 +1,4 @@
-"""How a trajectory that somebody waits for ends."""
+"""The end of a trajectory that a client waits for."""
 
 from pneumo_ros.axis.controller.progress import (
     GOAL_TOLERANCE_VIOLATED,
@@ -44,7 +44,7 @@ def test_the_path_may_be_watched() -> None:
     assert found.code == PATH_TOLERANCE_VIOLATED
 
 
-def test_what_is_given_up_is_said() -> None:
+def test_giving_up_is_reported() -> None:
     motion, trajectory = begun()
     motion.at(1.0, -0.1)
     found = Progress(trajectory, 0.003).verdict(1.0, -0.1, motion)

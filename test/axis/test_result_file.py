@@ -1,4 +1,4 @@
-"""What an identification leaves behind when the disk gives no room."""
+"""The files of an identification on a full disk."""
 
 from pathlib import Path
 
@@ -14,7 +14,9 @@ def test_each_result_gets_a_number_of_its_own(tmp_path: Path) -> None:
     assert [path.name for path in paths] == ["axis_1.yaml", "axis_2.yaml", "axis_3.yaml"]
 
 
-def test_a_full_disk_is_told_and_not_taken_for_a_number_in_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_and_not_mistaken_for_a_number_in_use(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(*_: object, **__: object) -> None:
         raise DataError("cannot write: No space left on device")
 

@@ -1,4 +1,4 @@
-"""Parameters as data: types, ranges, and the words for what is refused."""
+"""Parameters as data: types, ranges, and the messages of refusals."""
 
 import math
 from typing import Any

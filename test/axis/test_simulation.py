@@ -1,4 +1,4 @@
-"""The running plant without ROS: the same as the model, changed without jumps, measured as asked."""
+"""The running plant without ROS: equal to the model, changed without jumps, measured as configured."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The ticker: as many ticks as periods, made up for when late, dropped when too late, ended by an error."""
+"""The ticker: one tick per period; late ticks are made up for, very late ones dropped; an error ends it."""
 
 import threading
 from collections.abc import Callable
@@ -23,7 +23,7 @@ class Clock:
 
 
 def deadlines_of(ticks: int, work: Callable[[int], int]) -> tuple[Ticker, list[int]]:
-    """A ticker after so many ticks, of which number k took work(k) [ns], and its deadlines."""
+    """A ticker after some ticks, of which number k took work(k) [ns], and its deadlines."""
     clock, deadlines, done = Clock(), [], threading.Event()
 
     def tick(deadline: int) -> None:
@@ -49,7 +49,7 @@ def test_deadlines_are_one_period_apart() -> None:
 def test_a_short_delay_is_made_up_for_and_counted() -> None:
     ticker, deadlines = deadlines_of(100, lambda k: 20_000_000 if k == 10 else 30_000)
     assert {b - a for a, b in pairwise(deadlines)} == {PERIOD}
-    assert ticker.late == 9  # it begins 18 ms behind, and each tick takes back 1.97 ms
+    assert ticker.late == 9  # it starts 18 ms late, and each tick makes up for 1.97 ms
     assert ticker.dropped_ns == 0
 
 
@@ -68,7 +68,7 @@ def test_work_that_takes_longer_than_a_period_does_not_spiral() -> None:
     assert abs(deadlines[-1] - deadlines[0] - spent) < 0.12e9  # never more than 0.1 s behind
 
 
-def test_an_error_ends_it_and_is_told() -> None:
+def test_an_error_ends_it_and_is_reported() -> None:
     failures: list[Exception] = []
     done = threading.Event()
 

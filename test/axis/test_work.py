@@ -1,4 +1,4 @@
-"""What the identification's own process reads."""
+"""The requests that the identification's process reads."""
 
 import json
 from pathlib import Path
@@ -20,11 +20,11 @@ AXIS = load_model("axis")
 
 
 def quiet(share: float, text: str) -> None:
-    """Hear nothing."""
+    """Ignore the message."""
 
 
 def job(*bags: Path, joint_name: str = "") -> dict[str, Any]:
-    """What the node asks for: to identify the default machine from recordings."""
+    """The node's request: identify the default machine from recordings."""
     given = {"bags": [str(bag) for bag in bags], "axis": "", "joint_name": joint_name, "whole_model": False}
     return given | {"machine": AXIS.as_dict(), "name": "axis", "files": []}
 

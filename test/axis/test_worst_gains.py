@@ -1,4 +1,4 @@
-"""Every law in the control loop, on the plant: usual gains go where they should, the worst ones stay on the stroke."""
+"""Every law in the control loop, on the plant: usual gains reach the goal, the worst ones stay within the stroke."""
 
 import math
 

@@ -1,1 +1,1 @@
-"""Faults at random, in real processes: what breaks, what must hold all the same, and a table of both."""
+"""Random faults in real processes: the faults, the conditions that must still hold, and a table of both."""

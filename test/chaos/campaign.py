@@ -1,4 +1,4 @@
-"""Faults in random order, and what came of them."""
+"""Faults in random order, and their results."""
 
 import time
 import traceback
@@ -19,7 +19,7 @@ Fault = Callable[[Field], Any]
 
 
 class Result(NamedTuple):
-    """Of one kind of fault: how often it happened, the longest time [s] until all was well again, and what broke."""
+    """One kind of fault: how often it happened, the longest recovery time [s], and the failures."""
 
     name: str
     count: int
@@ -28,7 +28,7 @@ class Result(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Of a campaign: results by kind, messages in the recordings, and what killed recorders lost [s]."""
+    """A campaign: results by kind, messages in the recordings, and the time [s] that killed recorders lost."""
 
     results: list[Result]
     recorded: int
@@ -56,7 +56,7 @@ class Outcome(NamedTuple):
 
 
 def kinds(folder: Path) -> tuple[dict[str, Fault], list[str]]:
-    """Every fault that can be had here, and the names of the others."""
+    """Every fault that is possible on this machine, and the names of the others."""
     faults, disks = {**PROCESSES, **MESSAGES, **FILES, **PAGES}, {**DISKS, **FULL}
     return (faults | disks, []) if available(folder) else (faults, list(disks))
 
@@ -77,9 +77,9 @@ def campaign(
     names: Iterable[str] = (),
     told: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """At most `count` faults, of those in `names` or all, in about `seconds`; after each, what must hold is checked.
+    """At most `count` faults, from `names` or all, in about `seconds`; after each, the conditions are checked.
 
-    A field in which something broke is left, and a new one begins.
+    After a failure the processes are ended and new ones are started.
     """
     faults, without = kinds(folder)
     waiting = order(names or faults, count, Random(seed))
@@ -95,7 +95,7 @@ def campaign(
                     name, at = waiting.pop(0), time.monotonic()
                     counts[name] += 1
                     faults[name](field)
-                    field.probe.withdraw()  # beside its publishers no controller and no simulator starts
+                    field.probe.withdraw()  # next to its publishers no controller and no simulator starts
                     field.answers()
                     longest[name] = max(longest[name], time.monotonic() - at)
                     told(f"{sum(counts.values())}/{count} {name}: {time.monotonic() - at:.1f} s")

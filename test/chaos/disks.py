@@ -1,6 +1,6 @@
 """Faults in files: a disk that is full, one that cannot be written, recordings and other things that are damaged.
 
-Small disks are mounted in memory, which takes root; elsewhere `available` says that these faults cannot be had.
+Small disks are mounted in memory, which needs root; `available` is False where that is impossible.
 """
 
 import subprocess
@@ -22,7 +22,7 @@ COMMAND = ("-m", "pneumo_ros")
 
 @contextmanager
 def small_disk(folder: Path, size: int) -> Iterator[Path]:
-    """A disk of `size` bytes, mounted in `folder` for as long as the block lasts."""
+    """A disk of `size` bytes, mounted in `folder` for the duration of the block."""
     place = folder / f"disk_{time.monotonic_ns()}"
     place.mkdir()
     subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place], check=True, capture_output=True)
@@ -42,7 +42,7 @@ def available(folder: Path) -> bool:
 
 
 def full_disk_recorder(field: Field) -> None:
-    """The disk fills while a recorder writes: exit code 3, words, and a recording that other readers accept."""
+    """The disk fills while a recorder writes: exit code 3, a message, and a recording that other readers accept."""
     with small_disk(field.folder, field.random.randrange(100, 400) << 10) as disk:
         recorder = field.run("recorder", output=disk / "bag")
         code = recorder.process.wait(60.0)
@@ -55,7 +55,7 @@ def full_disk_recorder(field: Field) -> None:
 
 
 def full_disk_machine_file(field: Field) -> None:
-    """The disk is full when a machine file is to be replaced: the old one stays, and nothing else is left."""
+    """The disk is full when a machine file is replaced: the old one stays, and no other file remains."""
     with small_disk(field.folder, 1 << 20) as disk:
         out = disk / "machine.yaml"
         out.write_text("old")
@@ -71,7 +71,7 @@ def full_disk_machine_file(field: Field) -> None:
 
 
 def read_only_folder(field: Field) -> None:
-    """A disk that is read only: recorder, commands and machine files say so, with exit codes 2 or 3."""
+    """A read-only disk: recorder, commands and machine files report it, with exit codes 2 or 3."""
     with small_disk(field.folder, 1 << 20) as disk:
         subprocess.run(["mount", "-o", "remount,ro", disk], check=True, capture_output=True)
         recorder = field.run("recorder", output=disk / "bag")
@@ -94,7 +94,7 @@ def _command(field: Field, *words: str, quiet_code: tuple[int, ...] = (3,)) -> s
 
 
 def damaged_player(field: Field) -> None:
-    """A player of a damaged recording, on topics of its own; killed, if it still plays."""
+    """A player of a damaged recording, on its own topics; killed if it still plays."""
     path = field.folder / "damaged.mcap"
     path.write_bytes(
         mutate(field.random.choice(mcap_seeds()), field.random.randrange(1, 6), field.random.getrandbits(32))
@@ -114,7 +114,7 @@ def damaged_player(field: Field) -> None:
 
 
 def rubbish_in_the_folder(field: Field) -> None:
-    """Things appear in the folder that the identification watches, and vanish again."""
+    """Files appear in the folder that the identification watches, and vanish again."""
     folder = field.folder / "runs" / f"odd_{time.monotonic_ns()}"
     folder.mkdir()
     kind = field.random.choice(("damaged", "text", "empty", "vanishing", "metadata"))

@@ -17,9 +17,9 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.records import read_topics
 
 PLACE = "chaos"
-MARK = "chaos"  # frame of messages that a fault sends: they are no state of the simulator
+MARK = "chaos"  # frame of messages that a fault sends, to distinguish them from the simulator's
 RATE = 200.0  # Hz of the simulator
-ANSWER = 60.0  # s within which every node speaks again: no measure of speed, the machine may stand still for a while
+ANSWER = 60.0  # s within which every node publishes again: generous, because the machine may halt for a while
 BEGIN = 240.0  # s until the first state: all of them start at once
 OPTIONS: dict[str, dict[str, object]] = {
     "simulator": {"publish_rate": RATE},
@@ -30,7 +30,7 @@ OPTIONS: dict[str, dict[str, object]] = {
 
 
 class BrokenError(AssertionError):
-    """Something that must hold does not."""
+    """A condition that must hold is violated."""
 
 
 def hold(condition: object, words: str) -> None:
@@ -40,7 +40,7 @@ def hold(condition: object, words: str) -> None:
 
 
 class Field:
-    """Simulator, controller, recorder and identification in one namespace, each started anew when a fault killed it."""
+    """Simulator, controller, recorder and identification in one namespace, each restarted when a fault killed it."""
 
     def __init__(self, folder: Path, seed: int, stack: ExitStack) -> None:
         """Starts everything; `stack` ends it."""
@@ -69,7 +69,7 @@ class Field:
         return self.nodes[name]
 
     def run(self, name: str, **options: object) -> Running:
-        """One more process in the namespace, of which nothing is expected."""
+        """One more process in the namespace, which is not checked."""
         command = node(name, "-r", f"__ns:=/{PLACE}", **options)
         return self._stack.enter_context(running(*command, cwd=self.folder))
 
@@ -84,7 +84,7 @@ class Field:
     # --- what must hold after every fault ---------------------------------------------------------------------------
 
     def answers(self) -> None:
-        """Every node lives and speaks, and all that the simulator and the controller said is a number."""
+        """Every node runs and publishes, and all values of the simulator and the controller are finite."""
         for name, process in self.nodes.items():
             hold(process.process.poll() is None, f"{name} ended: {process.said[-500:]}")
         have = {topic: len(self.probe.heard[topic]) for topic in ("joint_states", "valve/command")}
@@ -102,7 +102,7 @@ class Field:
         self.finite()
 
     def spoken(self, topic: str, since: int) -> bool:
-        """Whether a message came that no fault has sent."""
+        """Whether a message arrived that was not sent by a fault."""
         return any(not self.foreign(message) for message in self.probe.heard[topic][since:])
 
     @staticmethod
@@ -123,7 +123,7 @@ class Field:
         del self.probe.heard["/diagnostics"][:-20], self.probe.heard["valve/command"][:-1]
 
     def until(self, condition: Callable[[], object], words: str | Callable[[], str], seconds: float = ANSWER) -> None:
-        """Until `condition` holds; BrokenError with `words` when it does not in time."""
+        """Wait until `condition` holds; BrokenError with `words` when it does not in time."""
         end = time.monotonic() + seconds
         while not condition():
             if time.monotonic() >= end:
@@ -131,13 +131,13 @@ class Field:
             time.sleep(0.01)
 
     def closed(self, seconds: float = 4.0) -> None:
-        """The simulator closes its valve; it says so once a second."""
+        """The simulator closes its valve; it reports this once a second."""
         end = time.monotonic() + seconds
         while self.probe.health(f"{PLACE}/simulator")[1]["voltage_V"] != "0":
             hold(time.monotonic() < end, "the valve stayed open")
 
     def whole(self, bag: Path, killed: float | None = None) -> None:
-        """A recording reads; one whose recorder was killed at `killed` [ns] lacks no more than a second."""
+        """A recording is readable; one whose recorder was killed at `killed` [ns] lacks no more than a second."""
         try:
             topics = read_topics(bag)
         except DataError as error:  # killed before anything was written

@@ -1,4 +1,4 @@
-"""Faults in messages: storms, numbers that are none, wrong names, stamps from another time, far too much at once."""
+"""Faults in messages: storms, NaN and infinities, wrong names, wrong stamps, oversized messages."""
 
 import math
 import struct
@@ -53,7 +53,7 @@ def storm(field: Field) -> None:
 
 
 def strange_numbers(field: Field) -> None:
-    """NaN, infinities and the ends of what a double holds, on every input."""
+    """NaN, infinities and the largest and smallest doubles, on every input."""
     for value in STRANGE:
         field.probe.publisher(Float64, "valve/command").publish(Float64(data=value))
         field.probe.publisher(Float64, "position/reference").publish(Float64(data=value))
@@ -67,7 +67,7 @@ def strange_numbers(field: Field) -> None:
 
 
 def empty(field: Field) -> None:
-    """Messages without what they are for."""
+    """Messages without their content."""
     field.probe.publisher(JointState, "joint_states").publish(joint_state([], []))
     field.probe.publisher(JointState, "joint_states").publish(joint_state([], ["piston"]))
     field.probe.publisher(JointState, "joint_commands").publish(joint_state([], ["piston"]))
@@ -88,7 +88,7 @@ def oversized(field: Field) -> None:
 
 
 def wrong_names(field: Field) -> None:
-    """Joints that are not there, one name twice, more names than numbers, and names of any letters."""
+    """Missing joints, a duplicate name, more names than numbers, and names with arbitrary characters."""
     for names, values in (
         (["pistn"], [0.1]), (["piston", "piston"], [0.1, 0.2]), (["a", "piston"], [0.1]), ([""], [0.1]),
         (["\u202e\n"], [1.0]),
@@ -109,7 +109,7 @@ def clock_jumps(field: Field) -> None:
 
 
 def broken_bytes(field: Field) -> None:
-    """Bytes that are no message of the topic's type, and some that nearly are."""
+    """Bytes that are not a message of the topic's type, and some that nearly are."""
     head = b"\0\1\0\0"
     stamped = head + struct.pack("<iII", 1, 1, len(MARK) + 1) + MARK.encode() + b"\0"
     sent = [
@@ -122,7 +122,7 @@ def broken_bytes(field: Field) -> None:
         (JointTrajectory, "joint_trajectory"),
     ):  # fmt: skip
         for data in sent:
-            with suppress(RuntimeError):  # the middleware itself refuses what is too long for a number
+            with suppress(RuntimeError):  # the middleware itself refuses a length that overflows
                 field.probe.publisher(kind, topic, RAW).publish(data)
     field.probe.supply(7e5)
     field.probe.trigger("controller/resume")

@@ -1,4 +1,4 @@
-"""Faults in the workbench: killed, ended, stopped, sent rubbish, given damaged recordings and a disk that is full."""
+"""Faults in the workbench: killed, ended, stopped, invalid requests, damaged recordings and a full disk."""
 
 import re
 import signal
@@ -18,7 +18,7 @@ from chaos.disks import small_disk
 from chaos.field import ANSWER, Field, hold
 from chaos.processes import PAUSE
 
-MANY = 40  # connections that are opened and never say anything
+MANY = 40  # connections that are opened and never send anything
 
 
 class Answer(NamedTuple):
@@ -41,11 +41,11 @@ class Page:
 
     @property
     def uploads(self) -> str:
-        """Where its desk takes recordings."""
+        """Address to which its desk accepts recordings."""
         return f"/upload/{self.desk.rpartition('/')[2]}"
 
     def ask(self, path: str, method: str = "GET", body: bytes | None = None) -> Answer:
-        """What it answers to one who knows the token."""
+        """Its answer to a request with the token."""
         connection = HTTPConnection("127.0.0.1", self.port, timeout=ANSWER)
         try:
             connection.request(method, path, body, {"Cookie": f"pneumo_workbench_{self.port}={self.token}"})
@@ -55,7 +55,7 @@ class Page:
             connection.close()
 
     def shown(self) -> None:
-        """It lives, its desk is there, and it has not failed at anything."""
+        """It runs, its desk exists, and no request has failed."""
         hold(self.process.process.poll() is None, f"the workbench ended: {self.process.said[-500:]}")
         answer = self.ask(self.desk)
         hold(answer.status == 200 and b"<html" in answer.body.lower(), f"its desk: {answer.status}")
@@ -76,7 +76,7 @@ def page(field: Field, *bags: Path, **variables: str) -> Iterator[Page]:
 
 
 def kill_workbench(field: Field) -> None:
-    """kill -9 with an upload under way: the nodes do not mind, and the next one finds its recordings again."""
+    """kill -9 during an upload: the nodes are not affected, and the next workbench finds its recordings again."""
     bag = field.folder / "shown.mcap"
     bag.write_bytes(mcap_seeds()[0])
     with page(field, bag) as first, _begun(first):
@@ -89,7 +89,7 @@ def kill_workbench(field: Field) -> None:
 
 @contextmanager
 def _begun(shown: Page) -> Iterator[None]:
-    """An upload of which half has been sent."""
+    """An upload that is half sent."""
     with socket.create_connection(("127.0.0.1", shown.port), timeout=ANSWER) as line:
         head = f"PUT {shown.uploads}/half.mcap HTTP/1.1\r\nHost: 127.0.0.1:{shown.port}\r\nContent-Length: 1000000\r\n"
         cookie = f"Cookie: pneumo_workbench_{shown.port}={shown.token}\r\n\r\n"
@@ -98,7 +98,7 @@ def _begun(shown: Page) -> Iterator[None]:
 
 
 def stopped_workbench(field: Field) -> None:
-    """Stopped for a while, as a debugger does: it answers afterwards."""
+    """Stopped for a while, as by a debugger: it answers afterwards."""
     with page(field) as opened:
         opened.process.process.send_signal(signal.SIGSTOP)
         time.sleep(PAUSE)
@@ -107,14 +107,14 @@ def stopped_workbench(field: Field) -> None:
 
 
 def rubbish_on_the_line(field: Field) -> None:
-    """Bytes that are no request, lines that never end, uploads that break off, many that say nothing."""
+    """Bytes that are no request, endless lines, aborted uploads, many silent connections."""
     with page(field) as opened:
         request = f"GET {opened.desk} HTTP/1.1\r\nHost: 127.0.0.1:{opened.port}\r\n\r\n".encode()
         sent = [field.random.randbytes(4000), b"GET " + b"a" * 300_000, b"\0" * 1000, b"PUT / HTTP/1.1\r\n" * 1000]
         sent += [mutate(request, 4, field.random.getrandbits(32)) for _ in range(20)]
         lines = [socket.create_connection(("127.0.0.1", opened.port), timeout=ANSWER) for _ in range(MANY)]
         for line, data in zip(lines, sent, strict=False):
-            with suppress(OSError):  # it may hang up before all is said
+            with suppress(OSError):  # it may close the connection early
                 line.sendall(data)
         with _begun(opened):
             pass
@@ -125,7 +125,7 @@ def rubbish_on_the_line(field: Field) -> None:
 
 
 def damaged_recordings(field: Field) -> None:
-    """Recordings with bytes changed at random, given and dropped: shown, or refused in words."""
+    """Recordings with random bytes changed, given and dropped: shown, or refused with a message."""
     damaged = [
         mutate(field.random.choice(mcap_seeds()), field.random.randrange(1, 6), field.random.getrandbits(32))
         for _ in range(3)
@@ -140,7 +140,7 @@ def damaged_recordings(field: Field) -> None:
 
 
 def full_disk_workbench(field: Field) -> None:
-    """The disk fills with uploads: refused in words, nothing half, and the page goes on."""
+    """The disk fills with uploads: refused with a message, no partial file, and the page continues."""
     with small_disk(field.folder, 4 << 20) as disk, page(field, TMPDIR=str(disk)) as opened:
         statuses = []
         for number in range(12):

@@ -1,4 +1,4 @@
-"""Faults in processes: killed, stopped for a while, doubled, and parameters turned at random under way."""
+"""Faults in processes: killed, stopped for a while, doubled, and random parameter changes during motion."""
 
 import signal
 import time
@@ -13,7 +13,7 @@ PAUSE = 0.7  # s that a process is stopped
 
 
 def kill_simulator(field: Field) -> None:
-    """kill -9: the controller sends 0 V; the next one is controlled."""
+    """kill -9: the controller sends 0 V; it controls the restarted simulator."""
     field.kill("simulator")
     field.until(lambda: field.probe.voltage == 0.0, "commands went on without measurements")
     field.start("simulator")
@@ -27,7 +27,7 @@ def kill_controller(field: Field) -> None:
 
 
 def kill_recorder(field: Field) -> None:
-    """kill -9: what was recorded until a second before is there."""
+    """kill -9: everything recorded until a second before is readable."""
     field.until(lambda: field.bags[-1].exists(), "no recording appeared")
     time.sleep(field.random.uniform(0.0, 1.5))
     field.whole(field.bags[-1], field.kill("recorder"))
@@ -50,7 +50,7 @@ def end_and_restart(field: Field) -> None:
 
 
 def stop_and_continue(field: Field) -> None:
-    """A process that the system stops for a while, as a debugger does."""
+    """A process that is stopped for a while, as by a debugger."""
     name = field.random.choice(list(OPTIONS))
     process = field.nodes[name].process
     process.send_signal(signal.SIGSTOP)
@@ -67,7 +67,7 @@ def two_simulators(field: Field) -> None:
 
 
 def turned_parameters(field: Field) -> None:
-    """Physical parameters and gains at random in their ranges, during motion; each is taken or refused with words."""
+    """Random physical parameters and gains in their ranges, during motion; each is set or refused with a message."""
     owner = field.random.choice(("simulator", "controller"))
     names = [name for name in field.probe.names(owner) if "." in name and not name.startswith(("qos", "initial"))]
     chosen = field.random.sample(names, min(6, len(names)))
@@ -84,7 +84,7 @@ def turned_parameters(field: Field) -> None:
         done, reason = field.probe.set(owner, **{name.replace(".", "__"): min(max(near, low), high)})
         hold(done or len(reason) > 10, f"{name} was refused without a word")
         time.sleep(0.1)
-    for name, value in reversed(usual.items()):  # each at a time: some of them must fit each other
+    for name, value in reversed(usual.items()):  # one at a time: some of them must fit each other
         field.probe.set(owner, **{name.replace(".", "__"): value})
     field.kill(owner, signal.SIGINT)
     field.start(owner)

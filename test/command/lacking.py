@@ -1,4 +1,4 @@
-"""Recordings of a machine that has more friction than the default one, as a user has them."""
+"""A user's recordings of a machine with more friction than the default one."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,14 +13,14 @@ VISCOUS = 150.0  # N s/m
 
 
 def machine() -> Model:
-    """The default machine with viscous friction, and base parameters that are a little off."""
+    """The default machine with viscous friction and slightly different base parameters."""
     model = load_model()
     worn = {"lugre_friction.coulomb_friction": 71.5, "arctan_flow.filling_coefficient": 7.05e-9}
     return model.with_effects([*model.effects, "viscous_friction"], {"viscous_friction.coefficient": VISCOUS, **worn})
 
 
 def record(path: Path, kind: str, seconds: float = 6.0, seed: int = 0, model: Model | None = None) -> None:
-    """A recording of `kind` (see `identify.making.voltage`), with the noise of sensors."""
+    """A recording of `kind` (see `identify.making.voltage`), with sensor noise."""
     truth, rng = model or machine(), np.random.default_rng([seed, len(kind)])
     held = voltage(kind, np.arange(round(seconds * 1e3)) * 1e-3)
     start = truth.state(y=0.1 * seed, p_a=3e5, p_b=3.9e5)

@@ -1,4 +1,4 @@
-"""--namespace and --joint: every verb that reads recordings takes the axis that is meant, and asks when it must."""
+"""--namespace and --joint: every verb that reads recordings uses the chosen axis, and asks when the choice is open."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ Content = list[tuple[str, int, bytes]]  # contract name, recorded time [ns], mes
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The runs of each axis alone, of both in one recording, and of a rod beside a hand in one joint state."""
+    """The runs of each axis alone, of both in one recording, and of a rod and a hand in one joint state."""
     folder = tmp_path_factory.mktemp("choosing")
     for part in (*SIDES, "axes", "joints"):
         (folder / part).mkdir()
@@ -49,7 +49,7 @@ def merge(path: Path, content: dict[str, Content]) -> None:
 
 
 def with_hand(rows: Content) -> Content:
-    """The same, where joint states give a hand, which moves otherwise, and the piston as the rod."""
+    """The same, with joint states of a hand, which moves differently, and of the piston as `rod`."""
     return [(name, at, two_joints(data) if name == JOINT_STATES else data) for name, at, data in rows]
 
 
@@ -64,7 +64,7 @@ def two_joints(data: bytes) -> bytes:
 
 
 def answer(folder: Path, verb: str, bags: str, out: Path, *options: str) -> dict[str, Any]:
-    """The numbers that a verb finds."""
+    """The numbers that a verb prints."""
     given = [word.format(bags=folder / bags, out=out) for word in VERBS[verb]]
     assert main([*given, *options, "--quiet", "--json", str(out.with_suffix(".json"))]) in (0, 1)
     found = json.loads(out.with_suffix(".json").read_text())

@@ -1,4 +1,4 @@
-"""`pneumo compare` as a user types it: tables, JSON, exit codes, and words for what cannot be compared."""
+"""`pneumo compare` as a user types it: tables, JSON, exit codes, and messages for unsuitable input."""
 
 import json
 import os
@@ -22,7 +22,7 @@ EPOCH = 1_700_000_000 * 10**9
 
 @pytest.fixture(scope="module")
 def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Recordings of the rig, the machine file that is true for it, and recordings with something wrong."""
+    """Recordings of the rig, its true machine file, and faulty recordings."""
     folder = tmp_path_factory.mktemp("shelf")
     for name in ("constant_p1100", "constant_m0830"):
         model, recorded, _ = rig(name)

@@ -36,7 +36,7 @@ def _in_shelf(shelf: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """The one sentence that a wrong use of compare ends with."""
+    """The error message after a wrong use of compare."""
     assert main(["compare", *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""

@@ -1,4 +1,4 @@
-"""`pneumo compare --series` and `--cut`: arrays for plots of one's own, and seconds that are left out."""
+"""`pneumo compare --series` and `--cut`: arrays for the user's plots, and seconds that are left out."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is printed where."""
+"""Which text goes to stdout and which to stderr."""
 
 import io
 import json

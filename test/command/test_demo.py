@@ -1,4 +1,4 @@
-"""`pneumo demo`: real nodes, a real bag, a machine of another simulator, and what a person is shown."""
+"""`pneumo demo`: real nodes, a real bag, a machine of another simulator, and the printed text."""
 
 import json
 import subprocess
@@ -15,12 +15,12 @@ from pneumo_ros.command.main import main
 from pneumo_ros.plant import load_model
 from pneumo_ros.records import read_recording
 
-SEED, HIDDEN = 32, "viscous_friction"  # what that seed draws
+SEED, HIDDEN = 32, "viscous_friction"  # drawn by that seed
 
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, dict[str, Any]]:
-    """Folder, text and JSON of one demo, compared with a simulated recording too; the axis runs but shortly."""
+    """Folder, text and JSON of one demo, also compared with a simulated recording; the axis runs briefly."""
     folder = tmp_path_factory.mktemp("demo")
     other = ["simulate", "--input", "sine:3,0.5", "--seconds", "3", "--out", str(folder / "other"), "--quiet"]
     assert main(other) == 0

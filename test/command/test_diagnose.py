@@ -1,4 +1,4 @@
-"""`pneumo diagnose`: recordings in; what is missing, a table, JSON and a machine file out."""
+"""`pneumo diagnose`: recordings in; missing effects, a table, JSON and a machine file out."""
 
 import json
 import signal
@@ -105,7 +105,7 @@ def test_people_read_it_on_one_screen(done: Done) -> None:
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 2) -> str:
-    """The one sentence that a wrong use of diagnose ends with."""
+    """The error message after a wrong use of diagnose."""
     assert main(["diagnose", *arguments, "--quiet"]) == code
     out, err = capsys.readouterr()
     assert out == ""

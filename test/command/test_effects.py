@@ -1,4 +1,4 @@
-"""`pneumo effects NAME`: equations as they are written, with all that they use of their own file."""
+"""`pneumo effects NAME`: the source of the equations, with everything they use of their own file."""
 
 import json
 from pathlib import Path

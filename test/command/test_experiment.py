@@ -1,4 +1,4 @@
-"""`pneumo experiment` without a plant: the list, plans, programme files, and what it refuses."""
+"""`pneumo experiment` without a plant: the list, plans, programme files, and refusals."""
 
 import json
 import subprocess

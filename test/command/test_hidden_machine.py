@@ -1,4 +1,4 @@
-"""Machines that hide an effect: drawn by a seed, worn, recorded without a word of what they hide."""
+"""Machines that hide an effect: drawn by a seed, worn, recorded without naming the effect."""
 
 import json
 from random import Random

@@ -1,4 +1,4 @@
-"""What `pneumo identify` says in words."""
+"""Sentences of `pneumo identify`."""
 
 from typing import Any
 

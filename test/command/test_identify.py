@@ -136,7 +136,7 @@ def test_one_run_says_what_it_does_not_determine(bags: Path, monkeypatch: pytest
 
 
 def test_a_stretch_of_a_folder_can_be_named_too(bags: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
-    """Runs of the same name in different folders are told apart; what is named twice is taken once."""
+    """Runs of the same name in different folders are distinguished; a run that is named twice is read once."""
     monkeypatch.chdir(bags.parent)
     shutil.copytree("runs/run_2", "again/run_2", dirs_exist_ok=True)
     assert main(["identify", "runs/run_2", "runs/run_2/", "again/run_2", "--json", "-"]) == 1

@@ -1,4 +1,4 @@
-"""What can drive a simulation, and what is refused with which words."""
+"""Inputs of a simulation, and the messages for refused ones."""
 
 from pathlib import Path
 

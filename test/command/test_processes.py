@@ -14,12 +14,12 @@ from pneumo_ros.errors import PneumoError
 
 
 def started(fleet: Fleet, name: str) -> bool:
-    """Whether a node has come up: it has written its ROS log or said something."""
+    """Whether a node has started: it has written its ROS log or printed something."""
     return any(fleet.logs.glob("python_*.log")) or (fleet.logs / f"{name}.log").stat().st_size > 0
 
 
 def wait_for(fleet: Fleet, name: str) -> None:
-    """Until a node is up, at most 90 s."""
+    """Wait until a node has started, at most 90 s."""
     for _ in range(900):
         fleet.wait(0.1)
         if started(fleet, name):
@@ -36,7 +36,7 @@ def test_a_node_runs_and_ends_with_zero(tmp_path: Path) -> None:
 
 
 def test_a_node_that_fails_is_reported_with_its_last_words(tmp_path: Path) -> None:
-    (tmp_path / "bag").touch()  # no place for a recording
+    (tmp_path / "bag").touch()  # not a folder for a recording
     with Fleet(tmp_path / "logs") as fleet:
         fleet.start("recorder", "pneumo_ros.ros.recorder", {"output": str(tmp_path / "bag")})
         with pytest.raises(PneumoError, match=r"the recorder ended with exit code \d: .*bag"):

@@ -1,4 +1,4 @@
-"""The judge of diagnoses: what counts as right, and what a person is told."""
+"""The judge of diagnoses: which answer counts as right, and the printed text."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def test_groups_are_matched_so_that_most_is_found():
     assert judge([VISCOUS, LOAD], [(SPRING, (VISCOUS, LOAD)), ("line_delay", (VISCOUS,))]).right
 
 
-def test_what_a_person_is_told_names_what_went_wrong():
+def test_the_answer_names_what_went_wrong():
     assert judge([VISCOUS], [(VISCOUS, ())]).sentence() == "The diagnosis is right."
     told = judge([VISCOUS], [(LOAD, ())]).sentence()
     assert "wrong" in told

@@ -1,4 +1,4 @@
-"""`pneumo simulate`: recordings that say what the machine does."""
+"""`pneumo simulate`: recordings that contain the motion of the model."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""pneumo tune: a control file that is better than where it began, and usable as such; what it refuses."""
+"""pneumo tune: a usable control file that is better than its start; refusals."""
 
 import json
 from pathlib import Path

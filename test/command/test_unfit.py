@@ -1,4 +1,4 @@
-"""Recordings with something wrong, as a user meets them: a sentence that names it, what to do, and the exit code."""
+"""Faulty recordings as a user meets them: a sentence with the fault and the remedy, and the exit code."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from command.unfit_bags import LENGTH, write_all
 from pneumo_ros.command.main import main
 from pneumo_ros.records import read_recording
 
-# recording -> words of the one sentence on stderr, which name the problem, give numbers and say what to do
+# recording -> words of the sentence on stderr: the problem, numbers and the remedy
 UNFIT = {
     "swapped": ("chamber_a/pressure and chamber_b/pressure seem to be exchanged", "N (momentum)", "swapped-chambers"),
     "bar": ("chamber_a/pressure is 1.0", "as it would be in bar;", "type --read-as bar, or multiply bar by 100000"),
@@ -35,7 +35,7 @@ UNFIT = {
     "no_pressure": ("lacks chamber_b/pressure. There is: /chamber_a/pressure", "Needed: joint_states"),
     "renamed": ("If it is /rod_side, start what publishes it with --ros-args -r /rod_side:=/chamber_b/pressure",),
 }
-# recording -> words of the notes on stderr; the recording is used all the same
+# recording -> words of the notes on stderr; the recording is still used
 NOTED = {
     "truncated": ("breaks off after", "Everything up to the break is read"),
     "gaps": ("joint_states: 1 gap of more than 5 sample times (5 ms), the longest 1.5 s at 1.999 s", "is not used"),
@@ -66,7 +66,7 @@ def pneumo(folder: Path, *arguments: str) -> Done:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """All recordings; the kernel is compiled before anyone looks at what is said."""
+    """All recordings; the kernel is compiled first, so that its messages are not in the checked text."""
     folder = tmp_path_factory.mktemp("unfit")
     write_all(folder)
     assert pneumo(folder, "compare", "good").returncode == 0
@@ -96,7 +96,7 @@ def test_a_process_says_the_same_and_ends_with_that_code(folder: Path) -> None:
 
 
 def compared(folder: Path, name: str) -> dict[str, Any]:
-    """What `pneumo compare` says of the only run."""
+    """The JSON of `pneumo compare` for the only run."""
     target = folder / f"{name}.json"
     assert main(["compare", str(folder / name), "--json", str(target)]) == 0
     return dict(json.loads(target.read_text())["runs"][0])
@@ -127,7 +127,7 @@ def test_what_is_left_of_a_broken_recording_is_used(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["gaps", "pressure_gap"])
 def test_nothing_in_a_gap_is_judged(name: str, folder: Path) -> None:
-    """Of seven windows of 1 s side by side, those that touch the 1.5 s that are missing have no place."""
+    """Of seven adjacent windows of 1 s, those that overlap the missing 1.5 s are left out."""
     good, other = compared(folder, "good"), compared(folder, name)
     assert other["windows"] <= good["windows"] - 2
     for signal, error in good["error"].items():
@@ -136,7 +136,7 @@ def test_nothing_in_a_gap_is_judged(name: str, folder: Path) -> None:
 
 @pytest.mark.parametrize("name", CORRECTED)
 def test_the_advice_helps(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """With the option that the sentence names, the recording is as good as the good one."""
+    """With the option from the sentence, the recording is as good as the good one."""
     assert main(["simulate", "--input", str(folder / name), "--read-as", CORRECTED[name], "--seconds", "0.1",
                  "--out", str(folder / f"{name}_again")]) == 0  # fmt: skip
     assert "error" not in capsys.readouterr().err
@@ -156,7 +156,7 @@ def test_identify_refuses_the_same(name: str, folder: Path, capsys: pytest.Captu
 
 @pytest.mark.parametrize("name", NOTED)
 def test_identify_notes_the_same(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Of random steps some last long enough to be identified from."""
+    """Some of the random steps last long enough for identification."""
     assert main(["identify", str(folder / name)]) in (0, 1, 3)
     said = capsys.readouterr().err
     assert [words for words in NOTED[name] if words not in said] == [], said

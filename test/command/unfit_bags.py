@@ -1,4 +1,4 @@
-"""Recordings with something wrong, each made of a good one of the independent rig, as real bags."""
+"""Faulty recordings, each made from a good one of the independent rig, as real bags."""
 
 import shutil
 import struct
@@ -15,7 +15,7 @@ from pneumo_ros.records import Bag, BagTopic, BagWriter
 
 EPOCH = 1_700_000_000 * 10**9
 SECOND = 10**9
-START, STOP = 2000, 7600  # samples between which something hangs or is lost
+START, STOP = 2000, 7600  # samples between which a signal freezes or is lost
 LENGTH = 8000
 
 
@@ -27,7 +27,7 @@ def good_run() -> Run:
 
 
 def changed(run: Run) -> dict[str, dict[str, np.ndarray]]:
-    """Name -> what is changed in the good run."""
+    """Name -> the change to the good run."""
     a, b, y = run.pressure_a, run.pressure_b, run.position
     rng, k = np.random.default_rng(0), np.arange(LENGTH)
     hangs = (k >= START) & (k < STOP)
@@ -95,7 +95,7 @@ def rewrite(
 ) -> None:
     """A recording message by message, in the order in which it was recorded.
 
-    Of each topic the messages k stay for which `keep(topic, k)`; `topics` are new names; after three seconds the
+    Each topic keeps the messages k for which `keep(topic, k)`; `topics` are new names; after three seconds the
     clocks of stamps and recorder are set by so many seconds.
     """
     names, counts = topics or {}, dict.fromkeys(bags.TOPICS, 0)
@@ -110,6 +110,6 @@ def rewrite(
 
 
 def moved(payload: bytes, seconds: int) -> bytes:
-    """A message with a header, stamped so much later: its seconds come right behind the encapsulation."""
+    """A message with a header, stamped so much later: its seconds follow the encapsulation."""
     (stamp,) = struct.unpack_from("<i", payload, 4)
     return payload[:4] + struct.pack("<i", stamp + seconds) + payload[8:]

@@ -1,4 +1,4 @@
-"""Binned means: their intervals cover, and only what depends is said to explain."""
+"""Binned means: coverage of their intervals, and only dependent variables are reported as explaining."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_intervals_cover_although_neighbours_belong_together(blocks: int) -> Non
         value, cluster = correlated(rng, blocks, 10)
         bins = bin_means(np.zeros(len(value)), value, cluster, np.array([-1.0, 1.0]), 8)
         covered.append(bins.below[0] < 0.0 < bins.above[0])
-    assert 0.90 <= np.mean(covered) <= 0.98  # independent ones would cover two thirds
+    assert 0.90 <= np.mean(covered) <= 0.98  # intervals for independent values would cover two thirds
 
 
 def test_a_bin_of_few_clusters_has_no_interval_and_one_of_few_values_is_left_out() -> None:
@@ -39,7 +39,7 @@ def test_edges_follow_both_width_and_numbers() -> None:
     assert at[-1] > variable.max()
     inside = np.sum(np.abs(at) < 0.02)
     assert 12 <= inside <= 28  # about half of the 41 where nearly all values are
-    assert np.diff(at).max() < 0.15  # and none wider than twice an even share of the span
+    assert np.diff(at).max() < 0.15  # and no bin is wider than twice an even share of the span
 
 
 def test_constant_and_repeated_values_have_bins_too() -> None:

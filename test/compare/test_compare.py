@@ -1,4 +1,4 @@
-"""A model against recordings of the independent rig: what is said of the true machine, and of others."""
+"""A model against recordings of the independent rig: results for the true machine and for others."""
 
 import json
 import math
@@ -73,7 +73,7 @@ def test_the_true_machine_is_explained_by_noise(healthy: Comparison) -> None:
     ],
 )
 def test_a_hidden_effect_fails_the_equation_it_is_in(effect: str, size: float, failing: set[str]) -> None:
-    """A small part of what effects usually measure; all else the model knows."""
+    """A small share of the usual sizes; the model knows everything else."""
     model, _, run = rig("train_steps", effect=effect, size=size)
     verdicts = compare(model, [run]).equations
     assert {name for name, verdict in verdicts.items() if not verdict.explained_by_noise} == failing
@@ -92,7 +92,7 @@ def test_progress_names_every_run() -> None:
     assert said[:2] == [(0.0, "steps"), (0.5, "again")]
 
 
-def test_a_run_alone_and_among_others_is_judged_alike(healthy: Comparison) -> None:
+def test_a_run_alone_and_among_others_is_judged_equally(healthy: Comparison) -> None:
     alone = compare(rig("train_steps")[0], [rig("train_sweep")[2]])
     for name, error in alone.runs[0].error.items():
         assert error.rms == pytest.approx(healthy.runs[1].error[name].rms, rel=1e-9)
@@ -117,7 +117,7 @@ def test_what_never_moves_is_not_judged_by_momentum() -> None:
 
 
 def test_a_simulation_without_noise_is_explained() -> None:
-    """What `pneumo simulate` writes."""
+    """A recording of `pneumo simulate`."""
     model, _, run = own("steps", noisy=False, seconds=5.0)
     comparison = compare(model, [run])
     assert all(verdict.explained_by_noise for verdict in comparison.equations.values())

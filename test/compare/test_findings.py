@@ -1,4 +1,4 @@
-"""What a person is told, of recordings whose hidden effect is known."""
+"""The printed findings for recordings whose hidden effect is known."""
 
 import pytest
 from identify.making import own, rig

@@ -1,4 +1,4 @@
-"""What a refit moved, and what it could not know."""
+"""Parameters that a refit moved, and those it could not determine."""
 
 import pytest
 from identify.making import own

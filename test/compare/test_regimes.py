@@ -1,4 +1,4 @@
-"""Regimes of motions that are known: drawn by hand, and simulated."""
+"""Regimes of known motions: constructed by hand, and simulated."""
 
 import numpy as np
 import pytest

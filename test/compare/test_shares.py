@@ -1,4 +1,4 @@
-"""Shares of errors that were put where they are."""
+"""Shares of errors at known places."""
 
 import numpy as np
 import pytest

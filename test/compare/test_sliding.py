@@ -1,4 +1,4 @@
-"""The friction map against friction that is known."""
+"""The friction map against known friction."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def test_the_true_machine_lies_on_its_own_map() -> None:
 
 
 def test_missing_friction_shows_as_it_is_although_the_model_does_not_have_it() -> None:
-    """The map is Newton's law: what the model claims cancels."""
+    """The map follows from Newton's law: the model's own friction cancels."""
     model, _, run = rig("train_sweep", effect="viscous_friction", size=180.0)
     for points in friction_map(model, [along(model, run)]).values():
         slope = np.polyfit(points.velocity, points.force - points.model, 1)[0]

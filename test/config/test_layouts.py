@@ -1,4 +1,4 @@
-"""Layouts of rviz, PlotJuggler and Foxglove, and the controllers of ros2_control: they load, and name what there is."""
+"""Layouts of rviz, PlotJuggler and Foxglove, and ros2_control's controllers: they load and name existing topics."""
 
 import json
 import re
@@ -23,7 +23,7 @@ FIELDS = {
 
 
 def topic_of(text: str) -> str:
-    """The topic of the contract that a text begins with."""
+    """The topic of the contract at the start of a text."""
     found = [topic for topic in TOPICS if text.startswith(topic)]
     assert found, f"no such topic: {text}"
     return max(found, key=len)

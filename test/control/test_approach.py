@@ -1,4 +1,4 @@
-"""Wanted velocities near the goal: how fast, when it is a landing, and the way round a place that was missed."""
+"""Wanted velocities near the goal: their size, when to land, and the second approach after a miss."""
 
 import math
 
@@ -12,7 +12,7 @@ SHAPE = {"rate": 30.0, "braking": 0.15, "slowest": 0.02, "stop": 2.5e-4}
 
 
 def test_small_errors_are_approached_in_proportion_and_large_ones_with_the_braking_given() -> None:
-    moving = Setpoint(0.0, 0.05)  # not a landing, so that nothing else is in the way
+    moving = Setpoint(0.0, 0.05)  # not a landing, so that nothing else has an influence
     assert Approach().wanted(moving, 1e-6, 0.05, **SHAPE).velocity == pytest.approx(0.05 + 30e-6, rel=1e-6)
     far = Approach().wanted(moving, 0.5, 0.05, **SHAPE).velocity - 0.05
     assert far == pytest.approx(math.sqrt(2.0 * 0.15 * 0.5), rel=1e-2)
@@ -26,7 +26,7 @@ def test_the_acceleration_is_the_derivative_of_the_velocity() -> None:
         assert one.acceleration == pytest.approx((later.velocity - one.velocity) / h, rel=1e-3)
 
 
-def test_the_end_of_a_move_is_foreseen_and_a_reversal_is_none() -> None:
+def test_the_end_of_a_move_is_foreseen_and_a_reversal_does_not_count_as_one() -> None:
     way = moves([0.0, 0.06], 8.0, 1.0)
     for time in (8.94, 8.97, 8.99):
         left = remaining(way(time))

@@ -1,4 +1,4 @@
-"""The cascade on the plant: what it is for, and what each of its parts is worth."""
+"""The cascade on the plant: its purpose, and the effect of each of its parts."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_raw_steps_arrive_too_and_far_ones_brake_in_time() -> None:
 
 
 def test_the_friction_observer_is_worth_it() -> None:
-    """Told that there is no friction, the rest of the cascade cannot follow."""
+    """With friction set to zero, the rest of the cascade cannot follow."""
     bare = AXIS.with_parameters({"lugre_friction.static_friction": 0.0, "lugre_friction.coulomb_friction": 1e-3})
     assert rms("cascade", known=bare, learning=0.0) > 3.0 * rms("cascade")
 
@@ -54,14 +54,14 @@ def test_a_better_machine_file_tracks_better() -> None:
 
 
 def test_no_hunting_even_where_it_cannot_get_there() -> None:
-    """A tolerance below what sensors and stiction allow: it tries some times, then it rests, within a minute."""
+    """The tolerance is too small for sensors and stiction: after some attempts it rests, within a minute."""
     record = follow(law_for("cascade", tolerance=1e-6), moves([0.0, 0.06], 60.0, 1.0), 120.0)
     assert np.ptp(record.states[-10_000:, 0]) < 5e-5
     assert np.abs(record.states[-1, 0] - 0.06) < 1e-3
 
 
 def test_after_an_end_stop_it_comes_back() -> None:
-    """What the impact taught the friction observer must not hold it there."""
+    """The state of the friction observer after the impact must not hold it there."""
     record = follow(law_for("cascade"), moves([0.9, 1.3, 0.9], 6.0, 0.5), 18.0)
     assert np.abs(record.states[9000:12000, 0]).max() > 0.99
     assert record.states[-1, 0] == pytest.approx(0.9, abs=1e-3)

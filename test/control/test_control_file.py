@@ -1,4 +1,4 @@
-"""Control files: written and read back, those that ship, and what is refused."""
+"""Control files: written and read back, the shipped ones, and refusals."""
 
 from importlib.resources import files
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The Kalman filter: exact where its model is, Butterworth poles, the noise it promises."""
+"""The Kalman filter: exact where its model is exact, Butterworth poles, noise as stated."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def test_motion_under_known_and_constant_unknown_force_is_estimated_without_erro
 
 
 def test_known_force_takes_the_lag_out_of_the_acceleration() -> None:
-    """Blind to it, the filter follows a rising acceleration late."""
+    """Without the input, the filter follows a rising acceleration late."""
     time = DT * np.arange(600)
     late, early = StateEstimator(100.0), StateEstimator(100.0)
     for t in time:
@@ -74,7 +74,7 @@ def test_noise_of_the_velocity_is_that_of_its_transfer_function(bandwidth: float
     assert seen[1000:].std() == pytest.approx(sigma * np.sqrt(P[1, 1]), rel=0.05)
 
 
-def test_it_starts_at_rest_and_anew_after_a_reset() -> None:
+def test_it_starts_at_rest_and_again_after_a_reset() -> None:
     estimator = StateEstimator(200.0)
     estimator.update(0.5, 20.0, 0.0)
     assert (estimator.position, estimator.velocity, estimator.acceleration) == (0.5, 0.0, 0.0)

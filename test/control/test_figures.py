@@ -1,4 +1,4 @@
-"""Figures of runs whose figures are known."""
+"""Figures of runs with known results."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_errors_and_activity_count_from_the_time_given() -> None:
     assert seen.activity == pytest.approx(2000.0)
 
 
-def test_a_breakaway_is_a_stop_and_going_on_and_noise_between_the_two_is_none() -> None:
+def test_a_breakaway_is_a_stop_and_a_restart_and_noise_is_no_breakaway() -> None:
     speed = np.concatenate([np.full(50, v) for v in (0.0, 2e-3, 0.02, 3e-3, 0.03, 0.0, -0.02, 1e-4)])
     assert breakaways(speed) == 2
 

@@ -1,4 +1,4 @@
-"""The friction observer against the plant's own friction, and what makes it stable, elastic and able to learn."""
+"""The friction observer against the plant's own friction; it is stable, elastic and able to learn."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def plant_friction(velocity: np.ndarray) -> np.ndarray:
 
 
 def test_along_a_motion_with_reversals_it_is_the_plants_friction() -> None:
-    """But for sigma_1 and the ramp of alpha: 5 N of 100 while the bristles turn, 1 N while they slide."""
+    """Except for sigma_1 and the ramp of alpha: 5 N of 100 while the bristles reverse, 1 N while they slide."""
     time = DT * np.arange(4000)
     velocity = 0.05 * np.sin(2 * np.pi * 0.5 * time) + 0.02 * np.sin(2 * np.pi * 1.7 * time)
     ours, theirs = follow(FrictionObserver(Machine()), velocity), plant_friction(velocity)
@@ -78,7 +78,7 @@ def test_a_correction_brings_sticking_bristles_to_breakaway_and_no_further_than_
     assert observer.force(0.0) <= 1.5 * Machine().static_friction + 1e-9
 
 
-def test_what_sliding_takes_in_both_directions_tells_friction_from_load() -> None:
+def test_sliding_both_ways_separates_friction_from_load() -> None:
     machine = Machine()
     observer, friction, load = FrictionObserver(machine), 1.2, 25.0
     for k in range(40_000):

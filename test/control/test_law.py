@@ -1,4 +1,4 @@
-"""What every control law promises: gains with units and ranges, all or nothing, and answers that repeat."""
+"""Promises of every control law: gains with units and ranges, all set or none, and repeatable answers."""
 
 import math
 
@@ -29,7 +29,7 @@ def test_gains_are_numbers_with_unit_meaning_and_range(kind: type[Law]) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_bad_gain_changes_none(kind: type[Law]) -> None:
+def test_a_bad_gain_changes_no_gain(kind: type[Law]) -> None:
     law = kind()
     first, second = list(kind.gains)[:2]
     before = getattr(law, first)
@@ -101,7 +101,7 @@ WORST = [
 @pytest.mark.parametrize("values", WORST)
 @pytest.mark.parametrize("end", ["low", "high"])
 def test_the_worst_that_is_allowed_leaves_the_voltage_finite(kind: type[Law], values: dict, end: str) -> None:
-    """Gains at their ends and a machine at its, set under way, with measurements that leave the stroke."""
+    """Gains and machine parameters at their limits, set during motion, with measurements beyond the stroke."""
     law = kind()
     law.step(Setpoint(0.0), seen(0, 0.0))
     law.machine = Machine(**values)
@@ -114,7 +114,7 @@ def test_the_worst_that_is_allowed_leaves_the_voltage_finite(kind: type[Law], va
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_law_looks_into_the_future_or_keeps_a_past_run(kind: type[Law]) -> None:
-    """After a reset, time may begin anew."""
+    """After a reset, time may restart."""
     law = kind()
     first = [law.step(Setpoint(0.1), seen(k, 1e-5 * k)) for k in range(30)]
     law.reset()

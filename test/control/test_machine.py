@@ -1,4 +1,4 @@
-"""What the laws know of a machine is what its file says, and an effect that it does not list is not there."""
+"""The laws know a machine from its file only; an effect that the file does not list is absent."""
 
 from pathlib import Path
 
@@ -52,7 +52,7 @@ class OwnValve(Effect):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_a_valve_that_no_law_knows_is_refused_where_its_flow_is_inverted(name: str, tmp_path: Path) -> None:
-    """Laws took the coefficients of the default valve for it."""
+    """Laws once used the coefficients of the default valve here."""
     file = tmp_path / "own_valve.py"
     file.write_text(OWN_VALVE, encoding="utf-8")
     own = Model.build(["dead_zone", "own_valve", "lugre_friction"], {}, library=Library([file]), defaults=True)

@@ -1,4 +1,4 @@
-"""PID: the parts of its answer one by one, and what it does to the plant."""
+"""PID: each term of its output, and its behaviour on the plant."""
 
 import numpy as np
 import pytest

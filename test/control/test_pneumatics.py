@@ -1,4 +1,4 @@
-"""The inverted chambers and valve against the plant's own: the opening asked for makes the rate of force asked for."""
+"""The inverted chambers and valve against the plant's own: the computed opening gives the wanted rate of force."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""PVA: the parts of its answer one by one, and what it does to the plant."""
+"""PVA: each term of its output, and its behaviour on the plant."""
 
 import pytest
 from control.following import follow, law_for
@@ -14,7 +14,7 @@ BALANCED = 3e5, (4.1e-4 * 3e5 - 11.0) / 3e-4  # Pa, without force on the piston
 
 
 def first(setpoint: Setpoint, position: float = 0.0, **gains: float) -> float:
-    """Answer to the first measurement, at rest."""
+    """Output for the first measurement, at rest."""
     return Pva({**BARE, **gains}, OPEN, FREE).step(setpoint, Measurement(0.0, position, None, *BALANCED))
 
 

@@ -19,7 +19,7 @@ def test_shapes() -> None:
     assert wave(15.0).position == pytest.approx(-0.2)
 
 
-def test_a_sine_tells_its_derivatives() -> None:
+def test_a_sine_gives_its_derivatives() -> None:
     wave, h = sine(0.3, 0.5, 0.1, 0.4), 1e-5
     before, now, after = (wave(1.3 + k * h) for k in (-1, 0, 1))
     for order in range(3):

@@ -1,4 +1,4 @@
-"""Simulated sensors: as noisy as they say, without velocity, and repeated by their seed."""
+"""Simulated sensors: the stated noise, no velocity, and repeatable by their seed."""
 
 import numpy as np
 import pytest

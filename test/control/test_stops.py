@@ -27,7 +27,7 @@ def test_noise_is_no_motion_and_a_short_halt_no_stop() -> None:
     assert not stops.stuck
 
 
-def test_where_it_has_arrived_is_no_wrong_place_and_a_new_goal_begins_anew() -> None:
+def test_the_goal_is_no_wrong_place_and_a_new_goal_restarts_the_count() -> None:
     stops = Stops()
     stand(stops, 1e-3, arrived=True)
     assert stops.count == 0

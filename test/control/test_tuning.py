@@ -1,4 +1,4 @@
-"""Tuning: one cost for all, the search gets better and never leaves the ranges, and the same search repeats."""
+"""Tuning: one cost for all laws; the search improves, stays within the ranges and is repeatable."""
 
 from functools import partial
 

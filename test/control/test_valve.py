@@ -11,7 +11,7 @@ CROOKED = {"right_limit": 0.9, "left_limit": 0.5, "right_slope": 1.5, "left_slop
 
 
 def opening_of_plant(voltage: np.ndarray) -> np.ndarray:
-    """What the plant's own dead_zone effect makes of a voltage."""
+    """Opening from a voltage by the plant's own dead_zone effect."""
     model = load_model("axis").with_parameters({f"dead_zone.{name}": value for name, value in CROOKED.items()})
     states = np.tile(model.state(), (len(voltage), 1))
     return model.outputs(states, voltage)["opening"]

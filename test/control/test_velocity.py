@@ -1,4 +1,4 @@
-"""The velocity estimate: exact for constant velocity, its noise and its lag as stated."""
+"""The velocity estimate: exact for constant velocity, with noise and lag as stated."""
 
 import numpy as np
 import pytest

@@ -21,7 +21,7 @@ SECONDS = 12.0
 
 @lru_cache(maxsize=1)
 def runs() -> tuple[Run, ...]:
-    """A worn machine with a load, which creeps and slides; its numbers are another simulator's."""
+    """A worn machine with a load, which creeps and slides, recorded by the independent rig."""
     case = build(7, [Wish("constant_load", LOAD)])
     names = ("train_slow", "holdout_slow")
     whole = [make_run(recording_of(run)) for run in rig_case.make_runs(case, names, step=4e-5)]

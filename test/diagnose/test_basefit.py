@@ -1,4 +1,4 @@
-"""The current model fitted within what is known of its parameters, and within their ranges."""
+"""The current model fitted within the prior knowledge of its parameters, and within their ranges."""
 
 from types import SimpleNamespace
 from typing import Any, cast
@@ -53,7 +53,7 @@ COLUMN = list(load_model("axis").parameters).index(COULOMB)
 class Alternating:
     """Evidence of two residuals, each better than the other by its own scales: ten outliers, or all a little wrong.
 
-    Wherever one of them is, the other one is a step away, as along a law with kinks finer than any step.
+    Each one is a step away from the other, as along a law with kinks finer than any step.
     """
 
     names, family = ("momentum 100 ms",), np.zeros(1000, dtype=int)

@@ -1,4 +1,4 @@
-"""What remains on held-out recordings: the machine's own parameters being others then, or something that is missing."""
+"""The misfit on held-out recordings: parameters of the machine that changed between recordings, or a missing effect."""
 
 import pytest
 from identify.making import own, rig
@@ -12,7 +12,7 @@ COULOMB = "lugre_friction.coulomb_friction"
 
 
 def moved(model: Model, train: Run, held: Run) -> Moved | None:
-    """The answer for the momentum equation; nothing is a candidate, for none is asked about."""
+    """The answer for the momentum equation, without candidates."""
     return moved_between(Fitter(model, [train], [held], []), model, "momentum")
 
 

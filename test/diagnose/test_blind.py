@@ -1,4 +1,4 @@
-"""Machines of the independent rig that hide something, short recordings of them; benchmarks/bench_blind.py has many."""
+"""Short recordings of rig machines with a hidden effect; benchmarks/bench_blind.py has many."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +30,7 @@ def shortened(run: Run) -> Run:
 
 
 def outcome_of(folder: Path, seed: int, *hidden: str) -> Outcome:
-    """Record the worn machine of `seed` that hides these effects, and diagnose it from what was recorded."""
+    """Record the worn machine of `seed` that hides these effects, and diagnose the recordings."""
     machine = effects.build(seed, [effects.parse(text) for text in hidden])
     runs = {}
     for run in case.make_runs(machine, (*TRAIN, *HELD), STEP):

@@ -1,4 +1,4 @@
-"""The evidence: noise where nothing is missing, the residuals of the equations, the same for one variant or many."""
+"""The evidence: only noise where nothing is missing, the residuals of the equations, equal for one or many variants."""
 
 import numpy as np
 import pytest

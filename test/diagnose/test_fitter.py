@@ -1,4 +1,4 @@
-"""A model and what it may gain, fitted: sizes that stand in for each other, and what is known from elsewhere."""
+"""A model fitted with possible new effects: sizes that replace each other, and parameters with known values."""
 
 from functools import lru_cache
 
@@ -25,8 +25,8 @@ def with_effect(name: str, **values: float) -> Model:
     return start.with_effects([*start.effects, name], {f"{name}.{key}": value for key, value in values.items()})
 
 
-def test_a_size_that_another_stands_in_for_is_left_neutral() -> None:
-    """Of a Gaussian Stribeck curve, exponent 2 and no rational tail, which a tail and another exponent come near."""
+def test_a_size_that_another_one_replaces_is_left_neutral() -> None:
+    """For a Gaussian Stribeck curve, exponent 2 and no rational tail; a tail with another exponent is similar."""
     found = fitter(STRIBECK).simplest(with_effect(STRIBECK, exponent=1.6, rational=0.5), STRIBECK)
     assert 0.0 in (found[f"{STRIBECK}.rational"], found[f"{STRIBECK}.exponent"] - 2.0)
 
@@ -45,7 +45,7 @@ def test_the_equations_speak_against_an_effect_that_is_not_there() -> None:
 
 @pytest.mark.parametrize("std", [1e-4, None])
 def test_what_is_known_from_elsewhere_holds_a_refit_by_prediction(std: float | None) -> None:
-    """Static friction 2 % off: segments mend it, unless it is said to be known."""
+    """Static friction is 2 % off: segments correct it, unless it is given as known."""
     start = fitter(LEAKS).start
     off = start.with_parameters({STATIC: 1.02 * start[STATIC]})
     sure = None if std is None else {STATIC: std}

@@ -1,4 +1,4 @@
-"""Variants driven along a recording whose sensors do something: many at once give what each gives alone."""
+"""Variants driven along a recording with sensor effects: many at once give the result of each alone."""
 
 import numpy as np
 from identify.making import own
@@ -12,7 +12,7 @@ LATE = MODEL.with_effects([*MODEL.effects, *SENSORS])
 
 
 def variants(model: Model) -> np.ndarray:
-    """Parameter vectors: three other frictions, two of them with another delay, one with another offset."""
+    """Parameter vectors: three friction levels, two of them with another delay, one with another offset."""
     names, rows = list(model.parameters), np.tile(model.values, (6, 1))
     rows[:3, names.index("lugre_friction.coulomb_friction")] *= [1.0, 1.01, 0.99]
     rows[3:5, names.index("position_sensor_delay.delay")] *= 1.2

@@ -1,4 +1,4 @@
-"""Laws that differ from the catalogue's, and those that do not, beside a second effect."""
+"""Laws that differ from the catalogue's, and laws that do not, next to a second effect."""
 
 from types import SimpleNamespace
 from typing import cast
@@ -45,9 +45,9 @@ def test_relative_conditions_have_no_mean() -> None:
 
 
 def left(machine: np.ndarray, free: bool) -> float:
-    """Root mean square of what the model leaves of a machine whose friction is `machine`, noise and all."""
+    """Root mean square of the model's residual for a machine with friction `machine`, with noise."""
     residual = RNG.normal(size=N) + machine - LAW
-    slopes = -LAW[:, None]  # per usual size, which is what the model has
+    slopes = -LAW[:, None]  # per usual size, which is the model's value
     fit = BaseFit(
         MODEL, MODEL, ("viscous_friction.coefficient",), np.array([SIZE]), np.zeros(1), EVIDENCE, residual, slopes
     )
@@ -69,7 +69,7 @@ def test_an_effect_that_changes_along_the_stroke_is_within_its_freedom() -> None
 
 
 def test_another_effect_is_not_within_it() -> None:
-    machine = LAW + 0.5 * LAW.mean() * np.sign(POSITION)  # changes where the first does not act otherwise
+    machine = LAW + 0.5 * LAW.mean() * np.sign(POSITION)  # changes where the first one does not
     alone = left(machine, free=False)
     assert left(machine, free=True) > 0.45 * alone
     assert left(machine, free=True) > 3.0

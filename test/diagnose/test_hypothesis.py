@@ -1,4 +1,4 @@
-"""The linear steps of a fit: what has no answer is refused in a sentence."""
+"""The linear steps of a fit: a system without a solution is refused with a message."""
 
 import numpy as np
 import pytest

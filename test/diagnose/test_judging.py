@@ -1,4 +1,4 @@
-"""Whether a size is stable over runs left out, and large enough to stand for something."""
+"""Whether a size is stable when runs are left out, and large enough to matter."""
 
 from types import SimpleNamespace
 from typing import cast
@@ -21,7 +21,7 @@ RUN = np.repeat(np.arange(RUNS), EACH)
 
 
 def fitted(slope: list[float], truth: list[float]) -> tuple[BaseFit, Hypothesis]:
-    """A load fitted to four runs that feel it by `slope` each, and in which it is `truth` each."""
+    """A load fitted to four runs: `slope` is its effect and `truth` its true value in each run."""
     rng = np.random.default_rng(0)
     C, y = np.array(slope)[RUN], np.array(truth)[RUN]
     residual = C * y + rng.normal(size=len(RUN))
@@ -40,9 +40,9 @@ def fitted(slope: list[float], truth: list[float]) -> tuple[BaseFit, Hypothesis]
     ("slope", "truth", "expected"),
     [
         ([1.0] * 4, [2.0] * 4, True),
-        ([1.0, 1.0, 1.0, 9.0], [0.0, 0.0, 0.0, 2.0], False),  # three runs know it well, and it is not there
-        ([0.0, 0.0, 0.0, 9.0], [2.0] * 4, True),  # one run alone goes where it acts
-        ([0.01, 0.01, 0.01, 9.0], [0.0, 0.0, 0.0, 2.0], True),  # the others hardly feel it
+        ([1.0, 1.0, 1.0, 9.0], [0.0, 0.0, 0.0, 2.0], False),  # three runs determine it well, and it is zero there
+        ([0.0, 0.0, 0.0, 9.0], [2.0] * 4, True),  # only one run reaches the place where it acts
+        ([0.01, 0.01, 0.01, 9.0], [0.0, 0.0, 0.0, 2.0], True),  # it hardly acts in the others
     ],
 )
 def test_runs_speak_against_a_size_that_they_know(slope: list[float], truth: list[float], expected: bool) -> None:
@@ -58,7 +58,7 @@ def test_runs_speak_against_a_size_that_they_know(slope: list[float], truth: lis
         ("valve_spool_dynamics", {"angular_frequency": 300.0}, True),
     ],
 )
-def test_sizes_are_told_in_usual_ones(effect: str, values: dict[str, float], material: bool) -> None:
+def test_sizes_are_given_in_usual_sizes(effect: str, values: dict[str, float], material: bool) -> None:
     given = {f"{effect}.{key}": value for key, value in values.items()}
     model = MODEL.with_effects([*MODEL.effects, effect], given)
     assert (size_in(model, effect) > MATERIAL) is material
@@ -76,7 +76,7 @@ def test_a_spool_damped_like_a_first_order_is_as_large_as_its_lag() -> None:
     [
         ("asymmetric_friction", {"ratio": -0.027}, {"ratio": 0.029}, True),
         ("asymmetric_friction", {"ratio": -0.07}, {"ratio": 0.029}, False),
-        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": np.inf}, False),  # the data do not say
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": np.inf}, False),  # the data do not determine it
         (
             "leakage_to_atmosphere",  # of the other chamber
             {"conductance_a": 5e-10, "conductance_b": 1e-13},
@@ -91,7 +91,7 @@ def test_a_spool_damped_like_a_first_order_is_as_large_as_its_lag() -> None:
         ),
     ],
 )
-def test_a_size_within_its_deviations_of_none_may_be_none(
+def test_a_size_within_its_deviations_of_zero_may_be_zero(
     effect: str, values: dict[str, float], std: dict[str, float], expected: bool
 ) -> None:
     model = MODEL.with_effects([*MODEL.effects, effect], {f"{effect}.{key}": x for key, x in values.items()})
@@ -111,12 +111,12 @@ def test_a_round_whose_effect_vanished_says_so() -> None:
 @pytest.mark.parametrize(
     ("gain", "rest", "objects"),
     [
-        (0.46, 0.004, True),  # the data say something of it, and it is the rest of another's shape
-        (0.01, 0.004, False),  # they say nothing: base parameters stand in for it
+        (0.46, 0.004, True),  # the data determine it: it is the inexact law of another effect
+        (0.01, 0.004, False),  # they do not: base parameters can replace it
         (0.46, 0.3, False),
     ],
 )
-def test_what_base_parameters_stand_in_for_is_no_shape_of_another_effect(
+def test_an_effect_that_base_parameters_imitate_is_not_the_rest_of_another(
     gain: float, rest: float, objects: bool
 ) -> None:
     h = Hypothesis("constant_load", LOAD, np.ones(1), np.empty(0), np.empty(0), t=10.0, relief=6.0)
@@ -126,7 +126,7 @@ def test_what_base_parameters_stand_in_for_is_no_shape_of_another_effect(
 
 
 def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
-    """A thousandth of a large rest in another equation is chance."""
+    """A thousandth of a large misfit in another equation is chance."""
     candidate = Candidate(
         Hypothesis("line_delay", (), np.empty(0), np.empty(0), np.empty(0)), np.empty(0),
         {"momentum": 0.001, "chamber_a": 0.5}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0,
@@ -137,7 +137,7 @@ def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
 
 @pytest.mark.parametrize(("elsewhere", "objects"), [(frozenset({"chamber_a"}), False), (frozenset[str](), True)])
 def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere: frozenset[str], objects: bool) -> None:
-    """Friction that follows the pressures, beside a gain of a pressure sensor that had been bent to make up for it."""
+    """Pressure-dependent friction, next to a pressure sensor gain that had been misfitted to compensate for it."""
     h = Hypothesis("pressure_dependent_friction", (), np.empty(0), np.empty(0), np.empty(0), t=200.0)
     gain = {"momentum": 0.99, "chamber_a": -1.09}
     candidate = Candidate(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
@@ -153,7 +153,7 @@ def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere:
     ],
 )
 def test_a_profile_of_a_texture_is_no_effect(name: str, force: float, objects: bool) -> None:
-    """Of forces below a hundredth of the drive it would have to explain nearly all, for it can follow any."""
+    """It must explain nearly all of a force below a hundredth of the drive force, because it can fit any force."""
     own = coordinates(MODEL.library.find(name))
     h = Hypothesis(name, own, np.full(len(own), 0.3), np.empty(0), np.empty(0), t=20.0)
     candidate = Candidate(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)

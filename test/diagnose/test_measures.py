@@ -1,4 +1,4 @@
-"""What an effect removes, measured where it acts."""
+"""The misfit that an effect removes, measured where it acts."""
 
 from types import SimpleNamespace
 from typing import cast
@@ -15,7 +15,7 @@ EVIDENCE = cast(Evidence, SimpleNamespace(names=("chamber_a 200 ms",), family=np
 
 
 def effect(windows: int = HERE, size: float = 1.5) -> np.ndarray:
-    """What the effect adds to the residual: hundreds of windows in a row, and hardly anything elsewhere."""
+    """The effect's part of the residual: hundreds of windows in a row, and hardly anything elsewhere."""
     added = np.full(N, 0.01)
     added[1000 : 1000 + windows] = size
     return added
@@ -54,12 +54,12 @@ def test_one_wild_breakaway_says_nothing_against_the_others() -> None:
     after = np.append(before[:-1], -7.0)
     assert gains(slips, before, after)["breakaway"] < -1.0
     assert usual_gains(slips, before, after)["breakaway"] > -0.1
-    assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them do
+    assert usual_gains(slips, before, before + 2.0)["breakaway"] < -1.0  # all of them overlap
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_one_block_alone_decides_nothing(sign: float) -> None:
-    """However much it says: three others that say the contrary outweigh it."""
+    """However strong its evidence: three others of opposite sign outweigh it."""
     saved, deviations = together(sign * np.array([1000.0, -1.0, -1.0, -1.0]))
     assert saved == pytest.approx(sign * (MOST_BLOCK - 3.0))
     assert abs(deviations) <= 1.0

@@ -1,4 +1,4 @@
-"""Errors of predictions in one number, and what counts as better."""
+"""Prediction errors as one number, and which of two counts as better."""
 
 from pneumo_ros.diagnose.prediction import pays, typical_error
 

@@ -14,7 +14,7 @@ BASE = 3  # parameters of the model itself
 
 
 def system(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Slopes (residuals, base + candidate) that resemble each other, and residuals."""
+    """Similar slopes (residuals, base + candidate), and residuals."""
     rng = np.random.default_rng(seed)
     slopes = rng.normal(size=(60, BASE + len(OWN))) + rng.normal(size=(60, 1))
     return slopes, rng.normal(size=60)
@@ -22,7 +22,7 @@ def system(seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_step_is_the_best_within_the_bounds(seed: int) -> None:
-    """Against scipy's bounded least squares, of which priors are further rows."""
+    """Against scipy's bounded least squares, with priors as additional rows."""
     slopes, here = system(seed)
     h = Hypothesis("", OWN, np.array([0.4, 0.1]), np.zeros(BASE), here)
     ridge, offset = np.append(np.ones(BASE), np.full(2, 1e-3)), np.zeros(BASE + 2)

@@ -1,4 +1,4 @@
-"""Which effects pass for rivals, and which of two that explain the same is taken."""
+"""Which effects count as rivals, and which of two equally good ones is chosen."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -19,7 +19,7 @@ TRACE = 3.0 * np.sin(0.1 * np.arange(N))
 
 
 def evidence() -> Evidence:
-    """As much of the evidence as the comparison of candidates reads: one family, blocks of ten."""
+    """The part of the evidence that the comparison of candidates reads: one family, blocks of ten."""
     names, family, block = ("momentum 100 ms",), np.zeros(N, dtype=np.int64), np.arange(N) // 10
     return cast(Evidence, SimpleNamespace(names=names, family=family, block=block))
 
@@ -42,12 +42,12 @@ def test_what_leaves_the_same_is_a_rival() -> None:
     assert [r.name for r in rivals(fit(), fit(), best, [best, other])] == ["spring_load"]
 
 
-def test_what_leaves_more_is_none() -> None:
+def test_an_effect_that_leaves_more_is_no_rival() -> None:
     best, other = candidate("constant_load", NOISE), candidate("spring_load", NOISE + 0.7 * TRACE, 99.0)
     assert rivals(fit(), fit(), best, [best, other]) == []
 
 
-def test_what_changes_something_else_is_none() -> None:
+def test_an_effect_that_changes_something_else_is_no_rival() -> None:
     best, other = (
         candidate("constant_load", NOISE),
         candidate("spring_load", NOISE + TRACE - 3.0 * RNG.normal(size=N), 99.0),
@@ -71,7 +71,7 @@ def test_the_general_one_is_taken_where_recordings_ask_for_it() -> None:
 
 
 def test_a_small_part_that_recordings_only_just_show_is_no_reason_for_the_general_one() -> None:
-    """However surely many recordings tell: a twentieth is how a machine's law differs from the catalogue's."""
+    """Even with many recordings: a machine's law differs from the catalogue's by a twentieth."""
     sure = 20.0 * fit().residual  # so much noise below the trace
     base = replace(fit(), residual=sure)
     general = candidate("asymmetric_viscous_friction", NOISE)

@@ -1,4 +1,4 @@
-"""In which order effects are added, with the fitting and the predicting played by a table."""
+"""In which order effects are added; a table replaces fits and predictions."""
 
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
@@ -16,11 +16,11 @@ from pneumo_ros.plant import Model, load_model
 
 BASE = load_model("axis")
 LOAD, DROOP, OFFSET, STRIBECK = "constant_load", "supply_pressure_droop", "pressure_sensor_offset", "stribeck_shape"
-CLEAR = {STRIBECK}  # its equation is explained: predictions need not bear it out
+CLEAR = {STRIBECK}  # its equation is explained: predictions need not confirm it
 
 
 def candidate(name: str) -> Candidate:
-    """A candidate that passes every test but is not clear: predictions have to bear it out."""
+    """A candidate that passes every test but is not clear: predictions have to confirm it."""
     h = Hypothesis(name, (), np.empty(0), np.empty(0), np.empty(0), t=50.0)
     share = 0.9 if name in CLEAR else 0.6
     given: dict[str, Any] = {"gain": {"momentum": 0.5}, "z": 9.0, "size": 1.0, "stable": True, "share": share}
@@ -28,7 +28,7 @@ def candidate(name: str) -> Candidate:
 
 
 class Played(Search):
-    """Candidates are tried in the order given; what is left of them, and how models predict, stands in tables."""
+    """Candidates are tried in the given order; their remaining misfit and the models' predictions come from tables."""
 
     def __init__(
         self,
@@ -77,7 +77,7 @@ def names(search: Search) -> list[str]:
     return [step.added.name for step in search.run().steps if step.added]
 
 
-def test_an_effect_that_predictions_do_not_bear_out_is_tried_again_once_another_is_in() -> None:
+def test_an_effect_that_predictions_reject_is_tried_again_after_another_is_added() -> None:
     search = Played([LOAD, DROOP], errors(base=10.0, load=10.0, droop=5.0, load_droop=1.0))
     assert names(search) == [DROOP, LOAD]
 
@@ -100,7 +100,7 @@ def test_what_vanished_beside_another_does_not_come_back() -> None:
 
 @pytest.mark.parametrize(("with_it", "added"), [(13.0, []), (6.01, []), (5.9, [STRIBECK])])
 def test_no_effect_is_kept_with_which_predictions_get_worse(with_it: float, added: list[str]) -> None:
-    """Not even one that explains its equation: held-out errors went from 270 to 476 noise floors with one."""
+    """Not even one that explains its equation: such a one raised held-out errors from 270 to 476 noise floors."""
     assert names(Played([STRIBECK], errors(base=6.0, stribeck=with_it))) == added
 
 
@@ -132,7 +132,7 @@ def test_an_addition_that_the_last_refit_makes_worse_is_taken_back_with_those_af
 
 def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:
     class Endless(Played):
-        """Its candidates are new ones in every round, and none of them helps."""
+        """Each round has new candidates, and none of them helps."""
 
         def round(self, model: Model, refused: Mapping[str, str]) -> Step:
             found = candidate(f"{LOAD}_{len(refused)}")

@@ -1,4 +1,4 @@
-"""What breakaways and reversals alone speak for: a size that they determine, and only of what enough of them show."""
+"""Effects that only breakaways and reversals show: they must determine the size, and enough of them must show it."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def tried(model: Model, before: Array, after: Array, std: dict[str, float], q: f
 
 @pytest.mark.parametrize(("std", "objects"), [(1.5, False), (13.8, True), (None, True)])
 def test_a_size_that_nothing_determines_is_refused(std: float | None, objects: bool) -> None:
-    """Everything else speaks for it: each event fits ten times better."""
+    """All other evidence supports it: each event fits ten times better."""
     model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
     before, after = np.full(40, 10.0), np.full(40, 1.0)
     known = {} if std is None else {f"{EFFECT}.rise": std}
@@ -36,7 +36,7 @@ def test_a_size_that_nothing_determines_is_refused(std: float | None, objects: b
 
 
 @pytest.mark.parametrize(("changed", "objects"), [(16, False), (3, True)])
-def test_an_effect_that_touches_two_events_in_five_is_told_by_their_upper_quartile(changed: int, objects: bool) -> None:
+def test_an_effect_in_two_events_of_five_shows_in_the_upper_quartile(changed: int, objects: bool) -> None:
     """The others scatter about the noise with it as without it."""
     model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
     rng = np.random.default_rng(1)
@@ -48,7 +48,7 @@ def test_an_effect_that_touches_two_events_in_five_is_told_by_their_upper_quarti
 def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
     model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
     before, after = np.full(40, 10.0), np.full(40, 1.0)
-    for against, objects in ((-3.0, False), (60.0, False), (130.0, True)):  # forty events speak for it by 3 each
+    for against, objects in ((-3.0, False), (60.0, False), (130.0, True)):  # forty events support it by 3 each
         candidate = Slipping(EFFECT, model, after, after, {f"{EFFECT}.rise": 1.5}, against)
         candidate = as_candidate(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
         assert any("contradict it" in words for words in candidate.objections) is objects
@@ -56,7 +56,7 @@ def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
 
 
 def test_sizes_grow_and_shapes_stay() -> None:
-    """Of what fades in with a size that falls, as a bandwidth, the inverse grows."""
+    """For an effect that grows as its size falls, such as a bandwidth, the inverse grows."""
     model = MODEL.with_effects([*MODEL.effects, EFFECT, "valve_spool_dynamics"], {f"{EFFECT}.rise": RISE})
     assert resized(coordinates(MODEL.library.find(EFFECT)), model, 2.0) == {f"{EFFECT}.rise": 2.0 * RISE}
     spool = resized(coordinates(MODEL.library.find("valve_spool_dynamics")), model, 2.0)
@@ -65,11 +65,11 @@ def test_sizes_grow_and_shapes_stay() -> None:
 
 
 LAG, TRUE = "friction_lag", 8e-3
-BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # sizes that the candidates begin with
+BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # initial sizes of the candidates
 
 
 class Stuck(SlipFits):
-    """Fits that stay where they begin: so far from the true lag, so bad; the other candidate is refused, not bad."""
+    """Fits that stay at their start; the misfit is the distance from the true lag; the other candidate is refused."""
 
     def _fitted(self, name: str, begin: Model) -> Slipping:
         size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
@@ -78,8 +78,8 @@ class Stuck(SlipFits):
 
 
 @pytest.mark.parametrize("begun", [2e-3, 32e-3, 8e-3])
-def test_a_fit_that_explains_part_is_begun_anew_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where another explains more that the equations along the motion speak against."""
+def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where another one explains more but contradicts the equations along the motion."""
 
     def begins(alone: Model, _found: Slips, name: str) -> tuple[float, Model]:
         key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)

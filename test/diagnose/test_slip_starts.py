@@ -1,4 +1,4 @@
-"""Where fits to breakaways begin: sizes of one kind at a time, and tangents that tell which effect is missing."""
+"""Starts of fits to breakaways: sizes of one kind at a time, and tangents that show which effect is missing."""
 
 from functools import lru_cache
 

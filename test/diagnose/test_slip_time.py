@@ -1,4 +1,4 @@
-"""How long a slip takes: against the plant, and against what it may be in a limit."""
+"""The duration of a slip: against the plant, and against a limiting case."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ STATIC = 100.0  # N, of the paper's machine
 
 @pytest.mark.parametrize("volts", [0.83, -1.0, 3.0, 7.0])
 def test_it_is_what_the_plant_takes(volts: float) -> None:
-    """Integrated at 10 kHz, from where the bristle carries its most: the force then is the static friction."""
+    """Integrated at 10 kHz, from the bristle's highest load: the force is then the static friction."""
     run, model = constant_run(volts, noisy=False), truth()
     (found,) = find_breakaways(model, run)
     (seconds,) = slip_times(model, [found])
@@ -32,7 +32,7 @@ def test_without_a_stribeck_curve_the_force_alone_accelerates_it() -> None:
     assert slip_times(model, [found])[0] == pytest.approx(expected, rel=0.02)
 
 
-def test_heavy_pistons_take_longer_and_none_longer_than_a_rest() -> None:
+def test_heavy_pistons_take_longer_but_never_longer_than_a_rest() -> None:
     (found,) = find_breakaways(truth(), constant_run(1.0))
     light, heavy, fixed = (
         slip_times(truth().with_parameters({"piston.mass": m}), [found])[0] for m in (2.0, 20.0, 1e4)

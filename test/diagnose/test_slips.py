@@ -1,4 +1,4 @@
-"""Friction refitted to breakaways and reversals, with the simulations played by a table."""
+"""Friction refitted to breakaways and reversals; a table replaces the simulations."""
 
 from types import SimpleNamespace
 from typing import Any, cast
@@ -16,14 +16,14 @@ AXIS = load_model("axis")
 @pytest.mark.parametrize(
     ("errors", "rounds"),
     [
-        ((88.0, 7.8, 1.02, 1.0), 2),  # a valley on the way
+        ((88.0, 7.8, 1.02, 1.0), 2),  # a local minimum on the way
         ((88.0, 1.2, 1.0), 1),  # arrived
         ((88.0, 60.0, 20.0), 1),  # something else is missing
         ((88.0, 30.0, 90.0, 1.0), 1),  # restarted, and worse
         ((88.0, 90.0, 1.0), 0),
     ],
 )
-def test_a_refit_that_came_far_is_begun_anew_where_it_ended(
+def test_a_refit_that_moved_far_is_restarted_where_it_ended(
     errors: tuple[float, ...], rounds: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refitted(model: Model, *_others: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Effects that base parameters stand in for, followed to where those are known to be."""
+"""Effects that base parameters imitate; these are moved back to their known values."""
 
 from types import SimpleNamespace
 from typing import Any, cast
@@ -21,13 +21,13 @@ FOUND = MODEL.with_effects([*MODEL.effects, "valve_null_offset"], {OFFSET: 0.15}
 
 
 def evidence() -> Evidence:
-    """As much of it as is read: one family, blocks of ten."""
+    """The part of it that is read: one family, blocks of ten."""
     names, family, block = ("chamber_a 40 ms",), np.zeros(N, dtype=np.int64), np.arange(N) // 10
     return cast(Evidence, SimpleNamespace(names=names, family=family, block=block))
 
 
 def fit(model: Model, names: tuple[str, ...], offset: float, slopes: list[np.ndarray]) -> BaseFit:
-    """A model that leaves noise and how the law of what was added differs; the last parameter may bend that law."""
+    """A model that leaves noise and the error of an added effect's law; the last parameter can bend that law."""
     count, bend = len(names), 0.1
     far = np.array([offset, *np.zeros(count)])
     columns = np.stack([*slopes, bend * BEND], axis=1)
@@ -36,12 +36,12 @@ def fit(model: Model, names: tuple[str, ...], offset: float, slopes: list[np.nda
 
 
 class Played:
-    """A fitter whose refits are known."""
+    """A fitter with known refits."""
 
     train = held = evidence()
 
     def fits(self, model: Model, bent: list[str]) -> tuple[BaseFit, BaseFit]:
-        assert bent == ["payload_mass"]  # not the law of what is judged
+        assert bent == ["payload_mass"]  # not the law of the judged effect
         found = fit(model, (LIMIT, OFFSET), 0.0, [OPENING, OPENING])
         return found, found
 
@@ -59,13 +59,13 @@ class Played:
 
 
 def test_it_is_judged_with_laws_as_free_as_without_it() -> None:
-    base: Any = fit(MODEL, (LIMIT,), 7.0, [OPENING])  # seven deviations from what is known
+    base: Any = fit(MODEL, (LIMIT,), 7.0, [OPENING])  # seven deviations from the known value
     own = (SimpleNamespace(logarithmic=False),)
     seen = Hypothesis("valve_null_offset", cast(Any, own), np.ones(1), np.zeros(2), NOISE, relief=20.0)
     (found,), (held,) = followed(cast(Fitter, Played()), base, [seen], 0.0, [])
     assert found.name == "valve_null_offset"
     assert found.relief == pytest.approx(24.5, abs=0.1)
     assert found.t == pytest.approx(15.0)
-    for left in (found.residual, held):  # the bend is taken out where it was
+    for left in (found.residual, held):  # the bend is removed from its place
         assert abs(float(left @ BEND) / N) < 0.02
         assert float(left @ left) / N == pytest.approx(float(NOISE @ NOISE) / N, rel=0.02)

@@ -1,4 +1,4 @@
-"""The part of the recordings by which candidates are ranked: it has every run and both directions."""
+"""The part of the recordings that ranks candidates: it includes every run and both directions."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ SAMPLE = 0.01  # s
 
 
 def sliding(name: str, speed: float, seconds: float, period: float = np.inf) -> Run:
-    """A run at constant speed [m/s], to and fro with `period` [s]."""
+    """A run at constant speed [m/s], back and forth with `period` [s]."""
     time = np.arange(round(seconds / SAMPLE) + 1) * SAMPLE
     way = np.where((time / period) % 1.0 < 0.5, speed, -speed)
     position, held = np.cumsum(way) * SAMPLE, np.repeat(way[1:], PARTS)
@@ -24,7 +24,7 @@ def seconds_by_direction(runs: list[Run]) -> tuple[float, float]:
 
 
 def test_every_run_and_both_directions_take_part() -> None:
-    """Three constant voltages of one direction, by which alone candidates were ranked, and what else was recorded."""
+    """Three constant voltages of one direction, which alone once ranked candidates, and the other recordings."""
     runs = [sliding(f"constant_p{k}", 0.1, 20.0) for k in range(3)]
     runs += [sliding(f"constant_m{k}", -0.1, 20.0) for k in range(3)]
     runs += [sliding("train_slow", 0.1, 60.0, period=10.0)]

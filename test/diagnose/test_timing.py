@@ -1,4 +1,4 @@
-"""Positions that come after the force by less than a sample, on a simulated axis that a measured force drives."""
+"""Positions that lag the force by less than a sample, on a simulated axis that a measured force drives."""
 
 from dataclasses import fields
 from functools import lru_cache
@@ -36,7 +36,7 @@ def test_it_is_found_to_a_tenth_of_a_sample(late: float) -> None:
     assert lateness(AXIS, [run(late)]) == pytest.approx(late, abs=1e-4)
 
 
-def test_none_is_seen_where_there_is_none() -> None:
+def test_no_lateness_is_seen_where_there_is_none() -> None:
     assert lateness(AXIS, [run(0.0)]) == 0.0
 
 
@@ -54,7 +54,7 @@ def test_the_input_is_put_off_and_nothing_else_changes() -> None:
 
 
 def test_an_effect_added_by_name_is_timed_too_and_says_so() -> None:
-    """Half a millisecond late costs newtons where the axis jerks; the law of friction would have to make up for it."""
+    """Half a millisecond of lag causes errors of newtons where the axis jerks; the friction law would absorb them."""
     found = add(AXIS, ["asymmetric_viscous_friction"], [run(0.8e-3)])
     result = adding_dict(found)
     assert result["input_delay_s"] == found.late == pytest.approx(0.8e-3, abs=1e-4)

@@ -1,4 +1,4 @@
-"""The one rule for a verdict, on every kind of outcome: what fails, what is too little to matter, what is missed."""
+"""The one rule for a verdict, on every kind of outcome: failures, misfits too small to matter, missed effects."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -14,7 +14,7 @@ from pneumo_ros.diagnose.outcome import Addition
 from pneumo_ros.diagnose.verdict import driving, failing, material, missed, rises, verdict
 from pneumo_ros.plant import load_model
 
-FORCE, FLOW = 100.0, 1e-3  # N, kg/s, what drives the equations
+FORCE, FLOW = 100.0, 1e-3  # N, kg/s, drive force and flow of the equations
 MODEL = load_model("axis")
 VISCOUS = Addition("viscous_friction", {}, (), 9.0, 1.0, 80.0)
 SPOOL = replace(VISCOUS, effect="valve_spool_dynamics")
@@ -22,7 +22,7 @@ NOISE, SWING = 5e-6, 0.1  # m, of the position, and how far it swings to and fro
 
 
 def compared(typical: float = 1.0, **left: tuple[float, float]) -> Comparison:
-    """A comparison that leaves so much in each equation, in its unit and over noise; predictions over noise."""
+    """A comparison with these misfits in each equation, in its unit and over noise; predictions over noise."""
     flows = {f"port_flow_{chamber}": np.array([FLOW, -FLOW]) for chamber in "ab"}
     seen = {"drive": np.array([FORCE, -FORCE]) + 7.0, "force": np.array([7.0, 7.0]), **flows}
     position = SWING * np.sin(0.5 * np.pi * 0.01 * np.arange(2000))
@@ -45,7 +45,7 @@ def left(equation: str, rms: float, ratio: float) -> Comparison:
     return compared(**{equation: (rms, ratio)})
 
 
-def test_forces_and_flows_are_told_from_what_drives_them() -> None:
+def test_the_drive_force_and_the_drive_flow() -> None:
     assert driving(left("momentum", 1.0, 2.0), "momentum") == pytest.approx(FORCE, rel=1e-12)
     assert driving(left("chamber_b", 1.0, 2.0), "chamber_b") == pytest.approx(FLOW, rel=1e-12)
 
@@ -53,10 +53,10 @@ def test_forces_and_flows_are_told_from_what_drives_them() -> None:
 @pytest.mark.parametrize(
     ("equation", "first", "last", "matters"),
     [
-        ("chamber_a", (7e-4, 160.0), (2e-5, 4.6), False),  # the shape of what was added
-        ("chamber_a", (7e-4, 160.0), (2e-4, 46.0), True),  # a twelfth of what was there, and a fifth of the flow
+        ("chamber_a", (7e-4, 160.0), (2e-5, 4.6), False),  # an inexact law of the added effect
+        ("chamber_a", (7e-4, 160.0), (2e-4, 46.0), True),  # a twelfth of the first misfit, and a fifth of the flow
         ("chamber_a", (1.2e-5, 3.0), (8e-6, 2.0), True),  # nothing explained it
-        ("momentum", (20.0, 400.0), (0.5, 10.0), False),  # less than friction repeats to
+        ("momentum", (20.0, 400.0), (0.5, 10.0), False),  # less than the scatter of friction
         ("momentum", (20.0, 400.0), (2.0, 40.0), False),
         ("momentum", (20.0, 400.0), (6.0, 120.0), True),
     ],
@@ -71,7 +71,7 @@ QUIET = {"momentum": (0.04, 1.0), "chamber_a": (4e-6, 1.0)}
 TEXTURE = QUIET | {"momentum": (0.5, 12.0)}  # half a per cent of the drive
 LEAKING = QUIET | {"chamber_a": (7e-4, 160.0)}
 RUBBING = QUIET | {"momentum": (8.0, 200.0)}
-BOTH = {"momentum": (0.5, 50.0), "chamber_a": (1.2e-5, 3.0)}  # what exceeds noise most is too little to matter
+BOTH = {"momentum": (0.5, 50.0), "chamber_a": (1.2e-5, 3.0)}  # the largest excess over noise is too small to matter
 FAR = 1500.0  # noise floors: 7.5 mm, more than a twentieth of what the position changes by within a second
 
 

@@ -1,4 +1,4 @@
-"""Breakaways: found where a piston moves off from rest, with the force that friction held."""
+"""Breakaways: found where a piston starts from rest, with the friction force at that moment."""
 
 from dataclasses import replace
 
@@ -20,14 +20,14 @@ def test_the_force_is_the_static_friction(volts: float) -> None:
     assert found.ramp > 0.0
 
 
-def test_slow_rises_tell_the_force_best() -> None:
+def test_slow_rises_give_the_force_best() -> None:
     slow, fast = (find_breakaways(truth(), constant_run(volts))[0] for volts in (0.80, 7.0))
     assert slow.spread < 1.0 < 5.0 < fast.spread
     assert abs(slow.force - STATIC) < 1.0 < abs(fast.force - STATIC)
 
 
 def test_a_falling_force_is_as_uncertain_as_a_rising_one() -> None:
-    """0.2 N, and what the force changes in 20 ms until sliding shows."""
+    """0.2 N, and the change of the force in the 20 ms until sliding is visible."""
     found = [Breakaway("run", 0, 0.0, 1, 100.0, ramp, 0.2, 1e-4) for ramp in (0.0, 50.0, -50.0)]
     assert [one.spread for one in found] == pytest.approx([0.2, 1.2, 1.2])
 

@@ -1,4 +1,4 @@
-"""Residuals of the equations: 1 noise where nothing is missing, and what is missing in its own unit where it acts."""
+"""Residuals of the equations: one noise level where nothing is missing; a missing effect in its unit where it acts."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -45,14 +45,14 @@ def test_the_true_machine_leaves_its_noise_on_the_independent_rig() -> None:
 
 @pytest.mark.parametrize("sample_time", [5e-4, 2e-3, 4e-3, 1e-2])
 def test_any_rate(sample_time: float) -> None:
-    """Few samples in a window: sums must still be integrals, or say how far they are from them."""
+    """Few samples in a window: sums must still be integrals, or state their distance from them."""
     for noisy in (True, False):
         model, _, run = own("steps", sample_time, noisy)
         assert max(ratios(model, run).values()) < 1.15
 
 
 def slope(residual: Residual, run: Run, signal: np.ndarray) -> float:
-    """Of the residual over a signal (n,) of the run."""
+    """Slope of the residual over a signal (n,) of the run."""
     return float(np.polyfit(np.interp(residual.time, run.time, signal), residual.value, 1)[0])
 
 
@@ -117,7 +117,7 @@ def test_nothing_moves() -> None:
 
 
 @pytest.mark.parametrize("samples", [60, 150])
-def test_a_run_shorter_than_a_window_has_none(samples: int) -> None:
+def test_a_run_shorter_than_a_window_has_no_window(samples: int) -> None:
     model, _, run = own("steps", seconds=5.0)
     cut = {name: getattr(run, name)[:samples] for name in ("position", "pressure_a", "pressure_b", "measured")}
     found = equation_residuals(model, replace(run, **cut, input=run.input[: (samples - 1) * 10]))

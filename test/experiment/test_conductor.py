@@ -1,4 +1,4 @@
-"""The conductor on plants of a few lines: which voltage, which trial, which end, and when it refuses to go on."""
+"""The conductor on small plants: which voltage, which trial, which end, and when it aborts."""
 
 import math
 from collections.abc import Callable
@@ -20,12 +20,12 @@ Speed = Callable[[float, float], float]  # of voltage and position
 
 
 def cart(volts: float, position: float) -> float:
-    """Moves as fast as it is told, beyond 0.1 V."""
+    """Moves at the given speed, beyond 0.1 V."""
     return 0.2 * volts if abs(volts) > 0.1 else 0.0
 
 
 class Ride:
-    """A programme conducted on a plant that has a speed at every voltage: what was sent and seen at each sample."""
+    """A programme on a plant with a speed for every voltage: the sent and measured values at each sample."""
 
     def __init__(
         self, programme: Programme, speed: Speed = cart, position: float = 0.0, longest: float = 400.0
@@ -126,7 +126,7 @@ def test_voltages_of_both_signs_are_turned_inwards_at_the_limits() -> None:
 
 
 def test_a_moving_piston_is_braked_before_it_is_left_alone() -> None:
-    """A plant that coasts for ever once it moves, unless it is braked."""
+    """A plant that never stops once it moves, unless it is braked."""
     speed = [0.0]
 
     def coasting(volts: float, position: float) -> float:
@@ -166,7 +166,7 @@ def test_a_piston_that_does_not_return_ends_everything() -> None:
     assert "is the supply on" in reason
 
 
-def test_a_position_that_is_no_number_ends_everything() -> None:
+def test_a_position_that_is_not_a_number_ends_everything() -> None:
     reason = aborts(PROGRAMME, lambda volts, position: math.nan if position < -0.1 else cart(volts, position))
     assert "the position is nan" in reason
 

@@ -1,4 +1,4 @@
-"""Programmes: what they refuse, what machine files make of them, and that files keep them."""
+"""Programmes: refusals, their limits from machine files, and programme files that keep them."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Which experiments tell confusable effects apart, and which cannot, by physics."""
+"""Which experiments distinguish confusable effects, and which cannot for physical reasons."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ MENU = {offer.name: offer for offer in menu(AXIS)}
 
 
 def found(effect_a: str, effect_b: str, *offers: str | Offer, noise: Noise | None = None) -> dict[str, Separation]:
-    """What the experiments would tell, by name."""
+    """The separations by experiment name."""
     chosen = [MENU[offer] if isinstance(offer, str) else offer for offer in offers]
     return {one.offer.name: one for one in separate(AXIS, effect_a, effect_b, offers=chosen, noise=noise)}
 
@@ -30,7 +30,7 @@ def one_way(direction: int) -> Offer:
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_sliding_one_way_does_not_tell_a_load_from_asymmetric_friction(direction: int) -> None:
+def test_sliding_one_way_does_not_separate_a_load_from_asymmetric_friction(direction: int) -> None:
     assert found("asymmetric_friction", "constant_load", one_way(direction))["one-way"].separation < 1.5
 
 
@@ -60,7 +60,7 @@ def test_leaks_show_at_closed_valve_and_not_without_pressure() -> None:
     assert told["vent"].separation < 0.1
 
 
-def test_pauses_tell_what_grows_at_rest_from_the_shape_of_the_stribeck_curve() -> None:
+def test_pauses_separate_growth_at_rest_from_the_stribeck_curve() -> None:
     told = found("dwell_time_breakaway", "stribeck_shape", "pauses", "fast-reversals", "triangle")
     assert list(told) == ["pauses", "fast-reversals", "triangle"]
     assert told["pauses"].separation > 2.0 * told["fast-reversals"].separation
@@ -82,7 +82,7 @@ def test_a_load_of_any_size_is_not_distinguished_from_the_force_on_the_rod() -> 
     )
 
 
-def test_more_noise_tells_less() -> None:
+def test_more_noise_separates_less() -> None:
     quiet = found("payload_mass", "position_sensor_delay", "fast-reversals")["fast-reversals"]
     loud = found("payload_mass", "position_sensor_delay", "fast-reversals", noise=Noise(1e-4, 3000.0))["fast-reversals"]
     assert quiet.separation > CLEAR

@@ -1,4 +1,4 @@
-"""Recordings of a small fleet: identified in seconds, and of machines whose friction is known."""
+"""Recordings of a small fleet of machines with known friction, identified in seconds."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ DAY = 86_400_000_000_000  # ns
 
 
 def record_fleet(folder: Path, coulomb: dict[str, list[float]]) -> Path:
-    """A folder for each machine, a campaign for each Coulomb friction [N] it has had, a week apart."""
+    """A folder for each machine, and a campaign for each value of its Coulomb friction [N], a week apart."""
     for machine, frictions in coulomb.items():
         for week, friction in enumerate(frictions):
             place = folder / machine / f"week_{week}"

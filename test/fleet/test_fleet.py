@@ -99,17 +99,17 @@ def examined(
         ((10.0, 10.5, 9.6), None),
         ((10.0, 20.0, 21.0), "1"),
         ((10.0, 10.1, 21.0), "2"),
-        ((10.0, 20.0, 10.1), None),  # it came back
+        ((10.0, 20.0, 10.1), None),  # it returned
         ((10.0, 20.0, 10.0, 20.0, 20.0), "3"),
         ((10.0,), None),
     ],
 )
-def test_a_drift_is_what_left_its_interval_and_stays_away(values: tuple[float, ...], since: str | None) -> None:
+def test_a_drift_leaves_its_interval_and_does_not_return(values: tuple[float, ...], since: str | None) -> None:
     (one,) = history([examined(k, value) for k, value in enumerate(values)])
     assert (one["drifted"]["f.c"]["since"] if one["drifted"] else None) == since
 
 
-def test_a_change_within_what_machines_repeat_is_none_however_well_it_is_known() -> None:
+def test_a_change_within_the_scatter_of_machines_is_no_drift() -> None:
     (one,) = history([examined(0, 1000.0, 1e-3), examined(1, 1025.0, 1e-3)])
     assert not one["drifted"]
 
@@ -125,7 +125,7 @@ def test_machines_that_scatter_beyond_their_intervals_do_not_drift_for_that() ->
     assert drifted == ["0", "1"]
 
 
-def test_in_a_large_fleet_chance_alone_drifts_nothing() -> None:
+def test_in_a_large_fleet_chance_alone_causes_no_drift() -> None:
     import numpy as np
 
     noise = np.random.default_rng(1).normal(10.0, 0.51, (2000, 2))

@@ -1,4 +1,4 @@
-"""How far machines scatter from campaign to campaign, beyond what their intervals say."""
+"""The scatter of machines from campaign to campaign, beyond their intervals."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ def track(values: np.ndarray, half: float) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("known", [0.0, 0.02])
 def test_it_is_the_deviation_of_one_campaign_beyond_its_interval(known: float) -> None:
-    """Values scatter by 3 %, and by what their intervals admit; the difference of two scatters by more, not each."""
+    """Values scatter by 3 % and by their intervals; only the difference of two values scatters by more."""
     values = 70.0 * (1.0 + RNG.normal(0.0, np.hypot(0.03, known), (100, 10)))
     scatter = unrepeated([track(row, 1.96 * 70.0 * known) for row in values])
     assert scatter == pytest.approx(0.03, rel=0.1)

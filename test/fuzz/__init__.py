@@ -1,1 +1,1 @@
-"""Bad input for every parser of the package: damaged files, grammars of nonsense, and what an answer must be."""
+"""Bad input for every parser of the package: damaged files, invalid documents, and the rules for an answer."""

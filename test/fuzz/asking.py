@@ -19,12 +19,12 @@ from pneumo_ros.workbench.safety import Guard
 
 PORT, TOKEN = 8050, "a-token-of-the-tests"
 KNOWN = f"Host: 127.0.0.1:{PORT}\nCookie: pneumo_workbench_{PORT}={TOKEN}\n"
-CALLBACK = "..variants.children.."  # shows names: whatever it is sent, no job starts
+CALLBACK = "..variants.children.."  # shows names: no request to it starts a job
 
 
 @lru_cache(1)
 def served() -> tuple[Client, str, dict[str, Any]]:
-    """The workbench without recordings, one desk of it, and what the page sends to have the machine's name shown."""
+    """The workbench without recordings, one of its desks, and the page's request for the machine's name."""
     desks, guard = Desks(Given()), Guard(PORT, TOKEN)
     app = make_app(desks, guard)
     app._setup_server()  # as Dash does at the first request
@@ -45,7 +45,7 @@ def served() -> tuple[Client, str, dict[str, Any]]:
 def ask(path: Path) -> None:
     """Send the request in the file: METHOD PATH, headers, an empty line, the body.
 
-    Raises UsageError with the words of a refusal; an answer of 500, which stands for a traceback, is none.
+    Raises UsageError with the text of a refusal; status 500 means a traceback and is not a refusal.
     """
     client, _, _ = served()
     head, _, body = path.read_bytes().partition(b"\n\n")
@@ -54,7 +54,7 @@ def ask(path: Path) -> None:
     headers = [(name.strip(), value.strip()) for name, mark, value in (line.partition(":") for line in lines) if mark]
     try:
         request = EnvironBuilder(path=quote(target, "/?=&%"), method=method, headers=headers, data=body)
-    except (ValueError, UnicodeError) as problem:  # no HTTP: a server's parser, waitress's, would not pass it on
+    except (ValueError, UnicodeError) as problem:  # no HTTP: the parser of the server (waitress) would not pass it on
         raise UsageError(f"not a request at all: {problem}"[:300]) from problem
     answer = client.open(request)
     words = answer.get_data(as_text=True)

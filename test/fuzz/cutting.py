@@ -1,4 +1,4 @@
-"""A recording cut at random places: what is read from the rest against what the whole one holds before the cut.
+"""A recording cut at random places: the messages read from the rest against those of the whole before the cut.
 
 The oracle is the `mcap` library, which walks the records of the whole file once and says where each chunk ends.
 """
@@ -23,7 +23,7 @@ Found = list[tuple[int, bytes]]  # recorded time [ns] and payload, in the order 
 
 
 class Cuts(NamedTuple):
-    """What came of the cuts: messages before them in whole chunks, messages read, and where something was wrong."""
+    """The results of the cuts: messages before them in whole chunks, messages read, and the places of errors."""
 
     name: str
     places: int
@@ -41,7 +41,7 @@ class Cuts(NamedTuple):
 
 
 def recording() -> tuple[str, bytes]:
-    """A recording of the rig where there is one, else one that is made up."""
+    """A recording of the rig where there is one, else an artificial one."""
     rig = os.environ.get("PNEUMO_RIG", "")
     found = sorted(Path(rig, "healthy").glob("constant_p1500/*.mcap")) if rig else []
     return (
@@ -57,7 +57,7 @@ def ends(data: bytes) -> list[tuple[int, int]]:
         path = Path(folder) / "whole.mcap"
         path.write_bytes(data)
         found, count = [], 0
-        # what is given may itself end within a record: the library then says so in either way
+        # the given file may itself end within a record: the library raises one of these two errors
         with path.open("rb") as stream, suppress(struct.error, McapError):
             for record in StreamReader(stream, emit_chunks=True).records:
                 if isinstance(record, Chunk):

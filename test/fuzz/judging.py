@@ -1,4 +1,4 @@
-"""What a parser may do with an input: give a result, or say in a few words why not; soon, and in little memory."""
+"""The permitted answers of a parser: a result, or a short error message; soon, and in little memory."""
 
 import resource
 import signal
@@ -13,16 +13,16 @@ from typing import NamedTuple
 from fuzz.parsers import Parser
 from pneumo_ros.errors import PneumoError
 
-TIME = 10.0  # s of a processor: how long others keep it is not the parser's fault
-MEMORY = 1 << 30  # bytes above what Python and its libraries take
+TIME = 10.0  # s of processor time: a busy machine is not the parser's fault
+MEMORY = 1 << 30  # bytes above the use of Python and its libraries
 WORDS = 2000  # characters of a message to a person
-CANARY = "canary"  # the file that code in an input would make
+CANARY = "canary"  # the file that code in an input would create
 
 ERROR, RESULT, BROKEN = "clear error", "result", "traceback"
 
 
 class Verdict(NamedTuple):
-    """How one input was answered, in how many seconds of a processor, and the words of the error or traceback."""
+    """The verdict on one input, the processor time [s], and the text of the error or traceback."""
 
     kind: str
     seconds: float
@@ -35,7 +35,7 @@ class TooSlowError(BaseException):
 
 @contextmanager
 def limited() -> Iterator[None]:
-    """The limits of time, and of warnings: what Python mutters on stderr is no clear answer either."""
+    """The limits of time and warnings: a warning of Python on stderr is not a clear answer either."""
     previous = signal.signal(signal.SIGPROF, _ring)
     signal.setitimer(signal.ITIMER_PROF, TIME)
     try:
@@ -63,7 +63,7 @@ def judge(parser: Parser, data: bytes, folder: Path) -> Verdict:
         kind, words = ERROR, str(error)
         if not 10 <= len(words) <= WORDS:
             kind, words = BROKEN, f"the message has {len(words)} characters: {words[:200]}"
-    except (Exception, TooSlowError):  # whatever it is, a user would see it as a traceback
+    except (Exception, TooSlowError):  # any other exception, which a user would see as a traceback
         kind, words = BROKEN, traceback.format_exc()
     seconds = time.process_time() - begin
     if any(Path(place, CANARY).exists() for place in (folder, ".")):

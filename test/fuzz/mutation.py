@@ -1,4 +1,4 @@
-"""Bytes that were a file: bits flipped, pieces lost, doubled, swapped with others, numbers made extreme."""
+"""Damaged bytes of a file: flipped bits, lost, doubled or swapped pieces, extreme numbers."""
 
 import struct
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ EXTREME = [
     *(struct.pack("<I", n) for n in (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 1 << 20)),
     *(struct.pack("<Q", n) for n in (0, 1, (1 << 63) - 1, 1 << 63, (1 << 64) - 1, 1 << 32)),
     *(struct.pack("<d", x) for x in (float("nan"), float("inf"), -0.0, 1e308, 5e-324)),
-]  # lengths, counts, times and values at the ends of what their type holds
+]  # lengths, counts, times and values at the limits of their type
 WORDS = [
     b"nan", b".inf", b"-1", b"1e999", b"9" * 400, b"~", b"[]", b"{}", b"&a [*a]", b"\xff\xfe", b"\0", b"\n", b":",
     b"- ", b"!!python/object/apply:os.system [touch canary]", b"!!python/name:os.system", b"2001-99-99", b"0x",
@@ -27,7 +27,7 @@ def mutated(seeds: Sequence[bytes], most: int = 6) -> st.SearchStrategy[bytes]:
 
 
 def one_of(files: Sequence[bytes]) -> st.SearchStrategy[bytes]:
-    """One of `files`, by number: a strategy that knew them would print them when something fails."""
+    """One of `files`, by number: a strategy with the contents would print them after a failure."""
     return st.integers(0, len(files) - 1).map(lambda number: files[number])
 
 

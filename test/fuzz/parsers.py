@@ -1,4 +1,4 @@
-"""The parsers: for each, the file it reads, how it is called, what holds for any result, and what it is given."""
+"""The parsers: for each, the file it reads, the call, the conditions for any result, and the inputs."""
 
 from collections.abc import Callable
 from importlib.resources import files
@@ -23,14 +23,14 @@ Inputs = Callable[[], st.SearchStrategy[bytes]]
 
 
 class Parser(NamedTuple):
-    """`read` raises PneumoError or asserts what holds for its result; `put` makes the file."""
+    """`read` raises PneumoError or asserts the conditions for its result; `put` writes the file."""
 
     name: str
     file: str
     read: Callable[[Path], None]
     inputs: Inputs
     sound: Callable[[], bytes]  # a file that it reads
-    beside: Callable[[], bytes] | None = None  # of a metadata.yaml: the recording that it tells of
+    beside: Callable[[], bytes] | None = None  # of a metadata.yaml: the recording that it describes
 
     def put(self, folder: Path, data: bytes) -> Path:
         """The file with `data` in it."""
@@ -53,7 +53,7 @@ def read_columns(path: Path) -> None:
 
 
 def read_everything(path: Path) -> None:
-    """The columns, and the axis whether these could be read or not."""
+    """The columns; and the axis, even when the columns cannot be read."""
     try:
         read_columns(path)
     finally:
@@ -61,7 +61,7 @@ def read_everything(path: Path) -> None:
 
 
 def read_axis(path: Path) -> None:
-    """The axis; what a recording promises of its arrays."""
+    """The axis, and the promises of a recording about its arrays."""
     run = read_recording(path)
     assert run.time[0] == 0.0
     assert (np.diff(run.time) > 0.0).all()
@@ -71,7 +71,7 @@ def read_axis(path: Path) -> None:
 
 
 def read_in_order(path: Path) -> None:
-    """Every message, as the player takes them."""
+    """Every message, as the player reads them."""
     bag = Bag(path)
     view = bag.overview()
     assert sum(view.counts.values()) == sum(1 for _ in bag.messages())
@@ -116,7 +116,7 @@ def read_voltages(path: Path) -> None:
 
 
 def read_effects(path: Path) -> None:
-    """A file of effects that loads makes a machine; it is code by design, so only its form is changed."""
+    """A file of effects that loads makes a machine; it contains code by design, so only its form is changed."""
     model = load_model("axis", [path])
     own = sorted(set(Library([path]).names()) - set(Library().names()))
     model.with_effects([*model.effects, *own])

@@ -1,4 +1,4 @@
-"""Small recordings to spoil: of a simulated axis in every form that is read, and messages put together at will."""
+"""Small recordings to damage: a simulated axis in every format that is read, and arbitrary messages."""
 
 import json
 import sqlite3
@@ -29,7 +29,7 @@ QOS = [{"history": 1, "durability": "transient_local", "depth": 1}]
 
 @cache
 def axis() -> Messages:
-    """A short run of everything a simulator sends."""
+    """A short run of every message that a simulator sends."""
     time = np.arange(SAMPLES) / 1000.0
     wave, gas = 0.1 * np.sin(40.0 * time), 4e5 + 1e4 * np.cos(40.0 * time)
     with TemporaryDirectory() as folder:
@@ -41,7 +41,7 @@ def axis() -> Messages:
 
 
 def description() -> dict[str, Any]:
-    """What a recording may say of its machine."""
+    """A recording's description of its machine."""
     return {"schema_version": 1, "model": {"piston": {"mass": 5.0}, "effects": []}, "package_version": "0", "seed": 1}
 
 
@@ -132,7 +132,7 @@ IDL = [
 
 
 def spoilt_definitions() -> st.SearchStrategy[bytes]:
-    """Whole MCAP files whose types are not what they should be, in both languages of definitions."""
+    """Whole MCAP files with wrong types, in both languages of definitions."""
     known = [definition_of(kind)[0].encode() for kind in TYPES.values()]
     forms = st.one_of(
         st.tuples(st.just("ros2msg"), mutated(known).map(_text)),
@@ -146,7 +146,7 @@ def spoilt_definitions() -> st.SearchStrategy[bytes]:
 
 
 def described() -> st.SearchStrategy[bytes]:
-    """Recordings whose description is nearly one."""
+    """Recordings with a nearly valid description."""
     topic = next(iter(LATCHED))
 
     def with_text(text: bytes) -> bytes:

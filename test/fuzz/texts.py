@@ -1,4 +1,4 @@
-"""Grammars of text files: values a YAML or JSON file may hold, and documents that are nearly what is wanted."""
+"""Grammars of text files: values that a YAML or JSON file may contain, and nearly valid documents."""
 
 import json
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ VALUES = st.recursive(
 )
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{b}: &{b} [{', '.join([f'*{a}'] * 9)}]\n" for a, b in zip("abcdefgh", "bcdefghi", strict=True)
-)  # nine references in each of nine lines: a few hundred bytes that stand for 9^9 words
+)  # nine references in each of nine lines: a few hundred bytes that expand to 9^9 words
 STRANGE = [
     BOMB,
     BOMB + "/**: {ros__parameters: *i}\n",
@@ -56,7 +56,7 @@ STRANGE = [
 
 
 def nearly(document: Any) -> st.SearchStrategy[Any]:
-    """`document` with some of its values, at any depth, replaced, left out, or beside others that nobody asked for."""
+    """`document` with some of its values, at any depth, replaced or left out, or with additional ones."""
     if isinstance(document, Mapping):
         kept = {key: st.one_of(nearly(value), nearly(value), VALUES) for key, value in document.items()}
         more = st.dictionaries(NAMES, VALUES, max_size=1)
@@ -95,12 +95,12 @@ def as_yaml(document: Any) -> bytes:
 
 
 def as_json(document: Any) -> bytes:
-    """JSON, with what it has no words for as text."""
+    """JSON; values without a JSON form become text."""
     return json.dumps(document, default=str, skipkeys=True).encode()
 
 
 def yaml_files(document: Any) -> st.SearchStrategy[bytes]:
-    """Files that nearly hold `document`, those that hold anything, and those that are strange YAML."""
+    """Files with nearly `document`, with anything, and with strange YAML."""
     strange = one_of([text.encode() for text in STRANGE])
     return st.one_of(one_changed(document).map(as_yaml), nearly(document).map(as_yaml), VALUES.map(as_yaml), strange)
 

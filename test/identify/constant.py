@@ -1,4 +1,4 @@
-"""Constant-voltage runs of the paper's machine, as its sensors show them, and a machine file that is off."""
+"""Constant-voltage runs of the paper's machine with sensor noise, and an inexact machine file."""
 
 from functools import lru_cache
 from pathlib import Path

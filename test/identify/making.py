@@ -1,4 +1,4 @@
-"""Runs and recordings for the tests: the model's own with the noise of sensors, and those of the independent rig."""
+"""Runs and recordings for the tests: the model's own with sensor noise, and those of the independent rig."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -36,7 +36,7 @@ PARAMETERS = {
 
 
 def voltage(kind: str, time: np.ndarray) -> np.ndarray:
-    """Random steps, a rising sine, or pushes a little beyond the dead zone [V]."""
+    """Random steps, a rising sine, or pushes just beyond the dead zone [V]."""
     if kind == "steps":
         return np.random.default_rng(1).uniform(-2.5, 2.5, 100)[(time / 0.4 + 1e-9).astype(int)]
     if kind == "sweep":
@@ -49,7 +49,7 @@ def voltage(kind: str, time: np.ndarray) -> np.ndarray:
 def own(
     kind: str, sample_time: float = 1e-3, noisy: bool = True, seconds: float = 20.0, friction: float = 1.0
 ) -> tuple[Model, np.ndarray, Run]:
-    """The default machine, with `friction` times its own, its true states (n, 5) and the run its sensors show."""
+    """The default machine with `friction` times its own, its true states (n, 5) and its measured run."""
     model, rng = load_model(), np.random.default_rng(0)
     model = model.with_parameters({name: friction * model[name] for name in FRICTION})
     time = np.arange(round(seconds / sample_time)) * sample_time
@@ -72,12 +72,12 @@ def rig(name: str, seed: int = 0, effect: str = "", size: float | None = None) -
 
 
 def model_of(machine: Machine) -> Model:
-    """The model with the parameters of a rig's machine; what the machine hides is not in it."""
+    """The model with the parameters of a rig's machine, without the hidden effect."""
     return load_model().with_parameters({ours: getattr(machine, theirs) for ours, theirs in PARAMETERS.items()})
 
 
 def recording_of(run: RigRun) -> Recording:
-    """A run of the rig as it would be read from its bag."""
+    """A run of the rig, as read from its bag."""
     origin = run.stamps[0]
     return recording(
         time=(run.stamps - origin) * 1e-9,
@@ -92,7 +92,7 @@ def recording_of(run: RigRun) -> Recording:
 
 
 def recording(**signals: Any) -> Recording:
-    """A recording of the given arrays; what is not given is not recorded."""
+    """A recording of the given arrays; other signals are not recorded."""
     fields: dict[str, Any] = dict.fromkeys(Recording.__dataclass_fields__)
     fields |= {
         "name": "run",

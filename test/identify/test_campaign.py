@@ -26,7 +26,7 @@ EVERY = (*FRICTION[:4], *COEFFICIENTS, *LIMITS, STIFFNESS)
 
 @lru_cache(maxsize=1)
 def campaign() -> Identification:
-    """Ten runs of 8 s of the paper's machine, from a machine file that is off."""
+    """Ten runs of 8 s of the paper's machine, identified from an inexact machine file."""
     return identify(wrong(), constant_runs())
 
 
@@ -59,7 +59,7 @@ def test_friction_of_the_paper_comes_back() -> None:
 
 
 def test_intervals_hold_the_truth_and_are_narrow() -> None:
-    """Nine intervals: one that misses is within what 95 % promises, three are not."""
+    """Nine intervals: one miss is consistent with 95 %, three are not."""
     assert sum(inside(campaign(), truth())) >= 7
     for name, parameter in campaign().parameters.items():
         if parameter.interval:

@@ -1,4 +1,4 @@
-"""Intervals: they hold the truth as often as they say, also where errors within a run are alike."""
+"""Intervals: they contain the true value as often as stated, also with similar errors within a run."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ TRUTH = np.array([1.0, 2.0])
 
 
 def line(groups: int, each: int, shared: float, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str]]:
-    """Estimate, half widths, least errors and groups of a line through points whose errors have a part per group."""
+    """Estimate, half widths, least errors and groups of a line through points with a common error per group."""
     rng = np.random.default_rng(seed)
     labels = np.repeat(np.arange(groups), each)
     x = rng.uniform(0.0, 1.0, groups)[labels] + 0.01 * rng.standard_normal(len(labels))  # a run has about one speed
@@ -22,7 +22,7 @@ def line(groups: int, each: int, shared: float, seed: int) -> tuple[np.ndarray, 
 
 
 def coverage(groups: int, each: int, shared: float) -> np.ndarray:
-    """Share of 400 repetitions in which the intervals hold each parameter."""
+    """Share of 400 repetitions in which the intervals contain each parameter."""
     held = []
     for seed in range(400):
         estimate, half, _, _ = line(groups, each, shared, seed)
@@ -44,14 +44,14 @@ def test_intervals_cover_the_truth_with_independent_errors() -> None:
 
 
 def test_errors_of_whole_runs_widen_the_intervals() -> None:
-    """Twenty-five points of one run are hardly more than one point when they err together."""
+    """Twenty-five points of one run with a common error count little more than one point."""
     half = line(14, 25, shared=3.0, seed=1)[1]
     alone = line(14, 25, shared=0.0, seed=1)[1]
     assert (half > 5.0 * alone).all()
 
 
 def test_residuals_below_their_noise_do_not_narrow_the_intervals() -> None:
-    """The stated noise is a floor: luck with few points must not promise more than the sensors can give."""
+    """The stated noise is a floor: a lucky fit of few points must not claim more than the sensors allow."""
     x = np.linspace(0.0, 1.0, 40)
     design = np.stack([np.ones(40), x], axis=1)
     half, _ = half_widths(np.full(40, 0.01), design, np.ones(40), ["one"] * 40)
@@ -78,7 +78,7 @@ def test_what_is_not_seen_has_no_finite_interval() -> None:
 
 
 def test_what_is_seen_as_a_sum_only_has_no_finite_interval() -> None:
-    """The second and third parameter do the same: neither is known, the first is."""
+    """The second and third parameter have the same effect: neither is known, the first is."""
     rng = np.random.default_rng(0)
     one, two = rng.standard_normal((2, 60))
     half, _ = half_widths(rng.standard_normal(60), np.column_stack([one, two, -3.0 * two]), np.ones(60), ["run"] * 60)
@@ -96,7 +96,7 @@ def test_what_was_known_before_counts_as_information_but_not_as_a_run() -> None:
 
 
 def test_what_was_known_before_does_not_make_five_runs_six() -> None:
-    """From five runs nobody can tell how alike errors within runs are; the intervals are those of independent ones."""
+    """Five runs do not show the correlation of errors within runs; the intervals assume independent errors."""
     rng = np.random.default_rng(0)
     shared = 5.0 * rng.standard_normal(5).repeat(12)
     design = np.append(np.ones(60), 1e-3)[:, None]

@@ -1,4 +1,4 @@
-"""What the map shows of machines that are not alike in both directions, or have an effect that the model lacks."""
+"""The map for machines that differ between directions, or have an effect that the model lacks."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -19,7 +19,7 @@ STATIC, COULOMB, STRIBECK, DRAG = FRICTION[:4]
 
 @lru_cache(maxsize=1)
 def campaign() -> Identification:
-    """A few runs of a machine that is alike in both directions."""
+    """A few runs of a machine with the same friction in both directions."""
     return identify(wrong(), constant_runs(0.83, -0.83, 7.0, -7.0))
 
 

@@ -53,7 +53,7 @@ def test_stated_noise_is_the_scatter() -> None:
     assert np.std(off) == pytest.approx(1.0, abs=0.25)
 
 
-def test_slow_and_fast_voltages_tell_all_four() -> None:
+def test_slow_and_fast_voltages_determine_all_four() -> None:
     fit = fit_flow(started(), windows(0.80, -0.80, 0.83, -0.83, 1.0, -1.0, 7.0, -7.0))
     assert not fit.undetermined
     check(fit, (FILL,), 1e-3)
@@ -69,15 +69,15 @@ def test_one_direction_leaves_the_other_limit() -> None:
 
 
 def test_fast_runs_alone_leave_the_dead_zone() -> None:
-    """At 7 V the valve is open by the same whatever the dead zone is: coefficients are known, limits are not."""
+    """At 7 V the opening does not depend on the dead zone: coefficients are known, limits are not."""
     fit = fit_flow(started(), windows(7.0, -7.0))
     assert set(fit.undetermined) == {RIGHT, LEFT}
     assert fit.undetermined[LEFT].startswith("needs runs at several small negative voltages")
     check(fit, COEFFICIENTS, 1e-2)
 
 
-def test_one_small_voltage_tells_nothing_by_itself() -> None:
-    """Only products of coefficient and opening are seen; the opening hangs on the limit."""
+def test_one_small_voltage_determines_nothing_by_itself() -> None:
+    """Only products of coefficient and opening are seen; the opening depends on the limit."""
     fit = fit_flow(started(), windows(0.83))
     assert set(fit.undetermined) == {*COEFFICIENTS, *LIMITS}
     assert "more voltages" in fit.undetermined[FILL]

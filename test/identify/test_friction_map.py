@@ -1,4 +1,4 @@
-"""The static map: parameters from points, and a sentence where points cannot tell."""
+"""The static map: parameters from points, and a sentence where points do not determine them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -101,7 +101,7 @@ def test_without_slow_points_and_breakaways_static_friction_stays_too() -> None:
 
 
 def test_at_one_speed_friction_is_not_split_up() -> None:
-    """Only the sum of Coulomb friction and drag is seen: neither is told, and neither moves."""
+    """Only the sum of Coulomb friction and drag is seen: neither is determined, and neither moves."""
     fit = fit_map(wrong(), points((0.1,)), [breakaway(100.0)], FRICTION[:4])
     assert {COULOMB, DRAG} <= set(fit.undetermined)
     assert "needs speeds over a factor of 1.5; the speeds here span 98 to 102 mm/s" in fit.undetermined[DRAG]
@@ -111,7 +111,7 @@ def test_at_one_speed_friction_is_not_split_up() -> None:
 
 
 def test_what_is_asked_for_but_not_shown_widens_the_rest() -> None:
-    """Whoever takes drag as known gets Coulomb friction from one speed; whoever asks for both gets neither."""
+    """With known drag, one speed gives Coulomb friction; with both unknown, it gives neither."""
     alone = fit_map(truth(), points((0.1,)), [], (COULOMB,))
     check(alone, (COULOMB,), 0.01)
     assert COULOMB in fit_map(truth(), points((0.1,)), [], (COULOMB, DRAG)).undetermined
@@ -138,7 +138,7 @@ def test_no_viscous_friction_is_an_answer_too() -> None:
 
 
 def test_a_value_on_its_bound_has_an_interval() -> None:
-    """Forces that ask for less than no viscous friction: zero, and the others as without it."""
+    """Forces that would need negative viscous friction: it is zero, and the others are as without it."""
     name = "viscous_friction.coefficient"
     start = truth().with_effects([*truth().effects, "viscous_friction"], {name: 0.0})
     less = [replace(p, force=p.force - 6.0 * p.velocity) for p in points(each=60)]

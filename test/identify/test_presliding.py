@@ -1,4 +1,4 @@
-"""Bristle stiffness from presliding where the sensor shows it, else by the paper's rules, said so."""
+"""Bristle stiffness from presliding where the sensor shows it, else by the paper's rules, with a remark."""
 
 from dataclasses import replace
 
@@ -44,7 +44,7 @@ def test_intervals_hold_the_truth_over_many_noises() -> None:
     assert sum(held) >= 17
 
 
-def test_fast_breakaways_show_none_and_the_rule_is_named() -> None:
+def test_fast_breakaways_show_no_presliding_and_the_rule_is_named() -> None:
     found = fit(truth(), [constant_run(7.0), constant_run(-7.0)])
     assert found.intervals == {}
     assert found.values[STIFFNESS] == pytest.approx(70.0 / 50e-6)
@@ -53,8 +53,8 @@ def test_fast_breakaways_show_none_and_the_rule_is_named() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_noisy_sensor_shows_none(seed: int) -> None:
-    """A millimetre of noise over 50 micrometres of presliding: a slope comes out, but it is luck."""
+def test_a_noisy_sensor_shows_no_presliding(seed: int) -> None:
+    """A millimetre of noise over 50 micrometres of presliding: the fitted slope is pure chance."""
     run = constant_run(0.80)
     noise = 1e-3 * np.random.default_rng(seed).standard_normal(len(run))
     breakaways = find_breakaways(truth(), run)

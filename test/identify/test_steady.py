@@ -1,4 +1,4 @@
-"""Stretches of constant velocity: what they measure, how well, and why others are refused."""
+"""Stretches of constant velocity: their values and accuracy, and why others are refused."""
 
 from dataclasses import replace
 
@@ -46,7 +46,7 @@ def test_stated_noise_is_the_scatter() -> None:
 
 
 def test_stated_noise_of_a_poor_position_sensor_is_the_scatter() -> None:
-    """A millimetre of noise: then the acceleration makes the noise of friction, and the pressures do not matter."""
+    """A millimetre of noise: then the acceleration dominates the noise of friction, and the pressures do not matter."""
     exact = constant_run(1.0, noisy=False)
     right, gaps = find_windows(truth(), exact), list[float]()
     for seed in range(4):

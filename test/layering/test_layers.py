@@ -38,12 +38,12 @@ def imports(path: Path) -> frozenset[str]:
 
 
 def room_of(path: Path) -> str:
-    """The part of the package a file belongs to: its top folder, or its own name."""
+    """The room of a file: its top folder, or its own name."""
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
 def imported_rooms() -> dict[str, set[str]]:
-    """What the files of each room import of other rooms; a name that is no room stands for the package itself."""
+    """The rooms that each room imports; a name that is not a room means the package itself."""
     found: dict[str, set[str]] = defaultdict(set)
     for path in FILES:
         ours = {name.split(".")[1] for name in imports(path) if name.startswith("pneumo_ros.")}
@@ -52,7 +52,7 @@ def imported_rooms() -> dict[str, set[str]]:
 
 
 def table() -> dict[str, tuple[str, list[str]]]:
-    """The rooms that CONTRIBUTING lists, in its order: what each is, and which rooms it imports."""
+    """The rooms that CONTRIBUTING lists, in its order: the sentence of each, and the rooms it imports."""
     rows = re.findall(r"^\| `(\w+)` \| (.+) \| (.*) \|$", CONTRIBUTING.read_text(encoding="utf-8"), re.MULTILINE)
     return {room: (what, re.findall(r"\w+", below)) for room, what, below in rows}
 
@@ -96,7 +96,7 @@ def test_physics_recordings_and_verbs_run_without_ros(tmp_path: Path) -> None:
 
 
 def test_importing_the_package_and_help_load_nothing_slow() -> None:
-    """`pneumo --help` answers at once, and even where nothing but Python is installed."""
+    """`pneumo --help` answers at once, even with only Python installed."""
     program = (
         "import sys; from pneumo_ros.command.main import main; code = main(['--help']); "
         "print(sorted({'rclpy', 'numpy', 'scipy', 'numba', 'rosbags', 'mcap', 'yaml'} & set(sys.modules)), code)"

@@ -1,4 +1,4 @@
-"""Every loop has a bound: `while True` stands only where its end is explained."""
+"""Every loop has a bound: `while True` is allowed only where its end is explained."""
 
 import ast
 from pathlib import Path

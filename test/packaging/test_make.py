@@ -1,4 +1,4 @@
-"""What make says when this machine lacks something, without installing anything."""
+"""Messages of make on a machine that lacks something, without installing anything."""
 
 import os
 import re
@@ -16,7 +16,7 @@ SCRIPT = ROOT / "tools" / "make_venv"
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Path:
-    """A folder of programs to be all that a path holds: a shell, uname, and no Python."""
+    """A folder that is the whole PATH: a shell, uname, and no Python."""
     for name in ("sh", "uname"):
         found = shutil.which(name)
         assert found is not None
@@ -48,7 +48,7 @@ def test_no_python(machine: Path) -> None:
 
 
 def test_a_python_that_is_too_old_is_passed_over(machine: Path) -> None:
-    program(machine, "python3", "exit 1")  # what the check of the version ends with
+    program(machine, "python3", "exit 1")  # exit code of the version check
     assert "no Python 3.10 to 3.13 found" in make_venv(machine)
 
 

@@ -1,4 +1,4 @@
-"""package.xml, setup.py and the change log say the same, and say all that the code needs."""
+"""package.xml, setup.py and the change log agree, and name everything that the code needs."""
 
 import ast
 import importlib
@@ -17,19 +17,19 @@ from pneumo_ros.environment import LIBRARIES, ROS_MODULES
 
 ROOT = Path(__file__).parents[2]
 PACKAGE_XML = ElementTree.parse(ROOT / "package.xml").getroot()
-# import name -> rosdep key, for what pip and rosdep call differently
+# import name -> rosdep key, where pip and rosdep use different names
 ROSDEP = {name: f"python3-{name}" for name in (
     "numpy", "scipy", "numba", "yaml", "plotly", "matplotlib", "rich", "waitress",
 )}  # fmt: skip
 # rosbags, mcap and dash have no rosdep key; the former two bring three more; sweeps do without a cluster
 BY_PIP_ONLY = {"rosbags", "mcap", "apsw", "lz4", "zstandard", "dash", "distributed"}
 WITHOUT_WHEELS = {"control_msgs"}  # without it there is no action; the rest works
-# always there with the other, in its version
+# always installed with the other, in its version
 PART_OF = {"builtin_interfaces": "std_msgs", "llvmlite": "numba", "flask": "dash", "werkzeug": "dash"}
 
 
 def setup_arguments() -> dict[str, Any]:
-    """What setup.py hands to setuptools."""
+    """The arguments that setup.py passes to setuptools."""
     specification = importlib.util.spec_from_file_location("setup_under_test", ROOT / "setup.py")
     assert specification is not None
     assert specification.loader is not None

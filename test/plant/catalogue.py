@@ -1,4 +1,4 @@
-"""What the tests of every effect share: all effects there are, what an argument means, and machines to put them in."""
+"""Shared by the tests of every effect: all effects, the meaning of arguments, and machines for them."""
 
 import math
 from collections.abc import Callable
@@ -33,12 +33,12 @@ _RANGES = {  # by unit: where the random values of states and signals lie
 
 
 def moves_piston(effect: type[Effect]) -> bool:
-    """Whether an effect stands in a room of the catalogue whose effects act on the piston."""
+    """Whether an effect is in a room of the catalogue whose effects act on the piston."""
     return effect.__module__.split(".")[-2] in ("friction", "piston")
 
 
 def meaning(name: str, effect: type[Effect]) -> tuple[str, Parameter | None]:
-    """Unit of what an argument of `effect` stands for, and its specification if it is a parameter."""
+    """Unit of an argument of `effect`, and its specification if it is a parameter."""
     if name in effect.parameters:
         return effect.parameters[name].unit, effect.parameters[name]
     for other in (effect, *EFFECTS.values()):
@@ -64,7 +64,7 @@ def drawn(parameter: Parameter, random: np.random.Generator) -> float:
 
 
 def argument(name: str, effect: type[Effect], random: np.random.Generator) -> float:
-    """A random value of what an argument stands for."""
+    """A random value of an argument."""
     unit, parameter = meaning(name, effect)
     return drawn(parameter, random) if parameter else float(random.uniform(*_RANGES.get(unit, (-1.0, 1.0))))
 
@@ -105,7 +105,7 @@ def sets(effect: type[Effect]) -> set[str]:
 
 @cache
 def lone_machine(name: str) -> Model:
-    """The effect with as few others as it needs to be felt: none, the bristle, or the whole axis."""
+    """The effect with as few others as it needs to have an influence: none, the bristle, or the whole axis."""
     written = {w for function in EFFECTS[name].functions.values() for w in function.writes}
     for others in ([], ["lugre_friction"])[bool(written & _READ_BY_BRISTLES) :]:
         try:
@@ -117,7 +117,7 @@ def lone_machine(name: str) -> Model:
 
 @cache
 def everything() -> Model:
-    """The axis with every effect there is: one kernel, in which any effect can be looked at alone."""
+    """The axis with every effect: one kernel, in which any effect can be examined alone."""
     return AXIS.with_effects([*AXIS.effects, *(e.name for e in CATALOGUE if e.name not in AXIS.effects)])
 
 

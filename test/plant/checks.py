@@ -1,4 +1,4 @@
-"""What a physical effect must fulfil, as functions that raise: for every effect of the catalogue, or any other."""
+"""Requirements on a physical effect, as functions that raise: for every effect of the catalogue, or any other."""
 
 import math
 
@@ -19,7 +19,7 @@ def functions(effect: type[Effect]) -> list[str]:
 
 
 def check_documentation(effect: type[Effect]) -> None:
-    """A person learns what it is, where it comes from, how to recognise it, and what may be entered."""
+    """The effect states its meaning, its source, how to recognise it, and the permitted values."""
     assert len((effect.__doc__ or "").split()) >= 4, "say in the docstring what it is and give the equation"
     assert effect.source, "name the source of the equation"
     assert effect.signature or effect.name in FRAME, "say in `signature` how a person recognises it in a recording"
@@ -43,7 +43,7 @@ def declared_unit(name: str, effect: type[Effect]) -> Quantity:
 
 
 def check_units(effect: type[Effect]) -> None:
-    """Run the effect's functions on quantities: all that is added or compared fits, the results are as declared."""
+    """Run the effect's functions on quantities: added or compared units match, the results are as declared."""
     random = seeded(effect.name)
     for key in functions(effect):
         function, aware, seen = effect.functions[key], with_units(vars(effect)[key]), set()
@@ -58,7 +58,7 @@ def check_units(effect: type[Effect]) -> None:
 
 
 def check_equations_are_finite(effect: type[Effect]) -> None:
-    """Each function alone, over the whole range of everything it reads."""
+    """Each function alone, over the whole range of its inputs."""
     random = seeded(effect.name)
     for key in functions(effect):
         for _ in range(300):
@@ -108,7 +108,7 @@ def check_dissipation(model: Model, effect: type[Effect]) -> None:
 
 
 def mass_rates(model: Model, p_a: float, p_b: float, supply: float, atmosphere: float, voltage: float) -> np.ndarray:
-    """What flows into both chambers [kg/s], the piston at rest in the middle."""
+    """Flows into both chambers [kg/s], the piston at rest in the middle."""
     outside = {"air.supply_pressure": supply, "air.atmospheric_pressure": atmosphere}
     still = in_python(model.with_parameters(outside))
     slope = still.derivatives(still.state(p_a=p_a, p_b=p_b), voltage)[0, 2:4]
@@ -129,7 +129,7 @@ def check_gas_flows_downhill(model: Model) -> None:
 
 
 def check_leak_is_closed(effect: type[Effect]) -> None:
-    """What an effect moves that knows neither supply nor atmosphere leaves one chamber and enters the other."""
+    """Without supply and atmosphere, gas that leaves one chamber enters the other."""
     equations, outside = effect.functions.get("equations"), {"p_s", "p_atm", "supply_pressure", "atmospheric_pressure"}
     if equations is None or not {"flow_a", "flow_b"} & set(equations.writes) or outside & set(equations.reads):
         return
@@ -142,7 +142,7 @@ def check_leak_is_closed(effect: type[Effect]) -> None:
 
 
 def bounded(model: Model, step: float, voltage: np.ndarray) -> bool:
-    """Whether a long step finds nothing that a short one does not; what both find extreme may be extreme."""
+    """Whether a long step gives no extreme value that a short one does not give; extremes in both are real."""
     start = model.state(p_a=3e5, p_b=4e5)
     coarse, fine = (np.abs(model.simulate(voltage, start, step=h)).max(axis=0) for h in (step, 2e-6))
     return bool(np.all(coarse <= 3.0 * fine + 1e-6))

@@ -1,4 +1,4 @@
-"""Machines that are driven along a given motion, and what is seen of them then."""
+"""Machines driven along a given motion, and their signals."""
 
 import numpy as np
 from plant.catalogue import lone_machine
@@ -23,7 +23,7 @@ def along(model: Model, y: object, v: object, sample: float, p: float = 4e5, **s
 def sliding(name: str, speed: float, y: float = 0.0, p: float = 4e5, seconds: float = 0.2, **values: float) -> float:
     """Friction [N] of the machine with effect `name` alone, its parameters at `values`, after `seconds` of sliding.
 
-    The position stays y: friction is asked for there.
+    The position stays y, where friction is evaluated.
     """
     model = lone_machine(name).with_parameters({f"{name}.{key}": value for key, value in values.items()})
     count = round(seconds / 1e-3)

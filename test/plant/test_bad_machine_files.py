@@ -1,4 +1,4 @@
-"""Bad machine files: each raises with what is wrong, where, and the nearest names; nothing is loaded or run."""
+"""Bad machine files: each error gives the fault, its place and the nearest names; nothing is loaded or run."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ CHOKED_ALONE = """/**:
     effects: [dead_zone, choked_flow]
     chambers: {volume_a: 5.1e-4}
 """
-BAD = {  # what is wrong: file, what the error says
+BAD = {  # fault: file, text of the error
     "unknown effect": (TEXT.replace("dead_zone", "deadzone"), r"unknown effect 'deadzone'; did you mean dead_zone"),
     "effect twice": (TEXT.replace("[dead_zone,", "[dead_zone, dead_zone,"), r"dead_zone is listed twice"),
     "unknown section": (TEXT.replace("    air:", "    aer:"), r"unknown section 'aer'; did you mean air"),
@@ -105,14 +105,14 @@ def test_bad_files_load_nothing_and_say_why(tmp_path: Path, wrong: str) -> None:
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00\x01", bytes(range(128, 256)), None])
-def test_files_that_hold_no_text_are_told(tmp_path: Path, content: bytes | None) -> None:
+def test_files_that_hold_no_text_are_reported(tmp_path: Path, content: bytes | None) -> None:
     path = tmp_path if content is None else written(tmp_path, content)
     with pytest.raises(DataError, match=rf"cannot be read.*one of: {NAMES}"):
         load_model(path)
 
 
 @pytest.mark.parametrize("name", ["axes", "", "/nowhere/axis.yaml", "a\x00b"])
-def test_unknown_machines_are_told_with_those_there_are(name: str) -> None:
+def test_unknown_machines_are_reported_with_the_known_ones(name: str) -> None:
     with pytest.raises(DataError, match=rf"one of: {NAMES}"):
         load_model(name)
 

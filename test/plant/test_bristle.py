@@ -99,7 +99,7 @@ def runge_kutta(model: Model, x: np.ndarray, h: float, steps: int) -> np.ndarray
 
 @pytest.fixture(scope="module")
 def heavy() -> Model:
-    """So heavy and smooth that its speed stays: alone the bristle moves, towards 50 um."""
+    """So heavy and smooth that its speed stays constant: only the bristle moves, towards 50 um."""
     return load_model("axis").with_parameters({"piston.mass": 1e4, "quadratic_drag.coefficient": 0.0})
 
 

@@ -1,4 +1,4 @@
-"""Composition: data flow decides the order, kinds of signals how contributions meet; every misfit has a sentence."""
+"""Composition: data flow decides the order, the kind of signal how contributions combine; every error has a message."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from plant.user_files import AXIS, composed, one, seen
 from pneumo_ros.errors import UsageError
 
 
-def test_whoever_reads_runs_after_all_who_write(tmp_path: Path) -> None:
+def test_effects_that_read_run_after_those_that_write(tmp_path: Path) -> None:
     """Listed first, the effect still sees the final opening and all flows."""
     body = one("opening, port_flow_a", "force = 10.0 * opening + port_flow_a", "return force")
     model = composed(tmp_path, body, base=("own", *AXIS.effects))
@@ -26,7 +26,7 @@ def test_products_multiply(tmp_path: Path) -> None:
         one("v", f"friction_scale = {k}", "return friction_scale", name=n) for n, k in (("Own", 0.5), ("Other", 3.0))
     ]
     model = composed(tmp_path, "".join(text), "own", "other")
-    bound = 0.5 * 3.0 * 100.0 / 1.4e6  # to which the bristle is taken back after a step
+    bound = 0.5 * 3.0 * 100.0 / 1.4e6  # to which the bristle is reset after a step
     for scaled, largest in ((model, bound), (in_python(AXIS), bound / 1.5)):
         x = scaled.simulate([0.0], scaled.state(v=0.1, z=2e-4), sample_time=1e-5, step=1e-5)
         assert x[0, 4] == pytest.approx(largest, rel=1e-12)
@@ -50,14 +50,14 @@ def test_effects_that_rewrite_the_same_two_signals_meet_in_both(tmp_path: Path) 
 
 
 def test_an_effect_that_rewrites_one_signal_and_adds_to_another_runs_once(tmp_path: Path) -> None:
-    """It is asked for its force first, and meets its own result on the way."""
+    """Its force is computed first, and depends on its own result."""
     body = one("stribeck", "stribeck = 0.5 * stribeck", "force = 8.0 * stribeck", "return stribeck, force")
     model = composed(tmp_path, body, "own")
     assert seen(model, "force") == pytest.approx(11.0 + 4.0)
     assert model.composition.text.count("own__equations(") == 3  # definition, derivatives, observation
 
 
-def test_defaults_stand_in_for_missing_effects() -> None:
+def test_defaults_replace_missing_effects() -> None:
     model = in_python(AXIS.with_effects(["arctan_flow"]))
     assert seen(model, "opening", 3.0) == 3.0
     assert seen(model, "friction", v=1.0) == 0.0
@@ -129,7 +129,7 @@ MISFITS = {
 
 
 @pytest.mark.parametrize("misfit", MISFITS)
-def test_misfits_are_told(tmp_path: Path, misfit: str) -> None:
+def test_misfits_are_reported(tmp_path: Path, misfit: str) -> None:
     body, sentence = MISFITS[misfit]
     names = [name for name in ("own", "other") if f"class {name.capitalize()}(" in body]
     with pytest.raises(UsageError, match=sentence):

@@ -1,4 +1,4 @@
-"""The order of the integrator: halving the step divides the error by four, whatever the bristle does."""
+"""The order of the integrator: halving the step divides the error by four, in every phase of the bristle."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ STEPS = (2e-4, 1e-4, 5e-5, 2.5e-5)
 
 
 def reference(model: Model, voltage: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """Samples from scipy's stiff solver on the model's own equations, begun anew at every sample."""
+    """Samples from scipy's stiff solver on the model's own equations, restarted at every sample."""
     rows = [start]
     for held in voltage:
         solution = solve_ivp(
@@ -54,7 +54,7 @@ def test_halving_the_step_quarters_the_error(case: str) -> None:
     model, (voltage, given) = load_model("axis"), CASES[case]
     start = model.state(**given)
     by_state = errors(model, voltage, start, reference(model, voltage, start))
-    # contact begins within a step, now early and now late: there the order is one of the mean
+    # contact starts within a step, sometimes early, sometimes late: there only the mean has this order
     low, high = (1.4, 2.6) if case == "end stop" else (1.85, 2.35)
     for name, error in zip(model.states[:4], by_state, strict=False):
         assert low < order(error) < high, f"{name}: errors {error} for steps {STEPS}"

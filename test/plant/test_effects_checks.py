@@ -1,4 +1,4 @@
-"""The checks that every effect must pass find what is wrong: each against an effect made to fail it."""
+"""The checks that every effect must pass find faults: each against an effect made to fail it."""
 
 import numpy as np
 import pytest
@@ -155,6 +155,6 @@ def test_what_is_no_unit_is_refused(text: str) -> None:
         unit(text)
 
 
-def test_units_are_told_apart() -> None:
+def test_units_are_distinguished() -> None:
     assert unit("N s2/m2").base == {"kg": 1, "m": -1}
     assert unit("kg/(s*sqrt(Pa))").base == unit("kg").base | {"kg": 0.5, "m": 0.5}

@@ -1,6 +1,6 @@
 """Every effect: documented, consistent in its units, finite, true to the balance of mass.
 
-All are found automatically: a new file in the catalogue is tested as soon as it is there.
+All are found automatically: a new file in the catalogue is tested without further work.
 """
 
 import pytest
@@ -59,7 +59,7 @@ def test_leak_between_chambers_loses_nothing(name: str) -> None:
 
 
 def test_what_may_be_missing_in_a_machine_has_a_neutral_value() -> None:
-    """All but what every machine has, and what has no parameter to turn down."""
+    """All except those that every machine has, and those without a parameter that switches them off."""
     without = {effect.name for effect in CATALOGUE if not neutral_values(effect)}
     assert without == {"arctan_flow", "end_stop", "lugre_friction", "rod_atmospheric_force"}
 

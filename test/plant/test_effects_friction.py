@@ -82,7 +82,7 @@ def test_knots_follow_a_smooth_profile_closely() -> None:
 
 @pytest.mark.parametrize("time_constant", [0.05, 5e-3, 5e-4, 5e-5])
 def test_lagged_friction_sees_the_velocity_of_then(time_constant: float) -> None:
-    """Of a velocity that grows steadily a first-order lag sees that of one time constant ago, however short it is."""
+    """For a steadily growing velocity, a first-order lag gives that of one time constant ago, even a very short one."""
     model = lone_machine("friction_lag").with_parameters({"friction_lag.time_constant": time_constant})
     v = 0.5 * 1e-3 * np.arange(1001)
     x, _ = along(model, np.zeros(1001), v, 1e-3)
@@ -107,7 +107,7 @@ def test_lagged_friction_opens_a_loop_that_grows_with_frequency() -> None:
 
 @pytest.mark.parametrize("pause", [0.1, 0.5, 1.0, 10.0])
 def test_breakaway_rises_with_the_time_of_rest_and_saturates(pause: float) -> None:
-    """Pulled ever harder, the piston leaves at F_s + rise (1 - exp(-pause / tau)), as bending renews little here."""
+    """Under a rising pull the piston breaks away at F_s + rise (1 - exp(-pause / tau)): bending renews little here."""
     library = Library()
     values = {"dwell_time_breakaway.rise": 30.0, "dwell_time_breakaway.distance": 0.1}
     model = Model.build(

@@ -24,7 +24,7 @@ def volumes(model: Model, y: np.ndarray) -> np.ndarray:
 
 
 def masses(model: Model, x: np.ndarray) -> np.ndarray:
-    """Gas in both chambers (n, 2) [kg], p V / (R T_g) with the temperature the gas has."""
+    """Gas in both chambers (n, 2) [kg], p V / (R T_g) with the temperature T_g of the gas."""
     T = np.full((len(x), 2), 293.0)
     if "theta_a" in model.states:
         T += x[:, [model.states.index("theta_a"), model.states.index("theta_b")]]
@@ -38,7 +38,7 @@ def test_leak_across_the_piston_evens_the_chambers_out_and_loses_nothing() -> No
     total = masses(model, x).sum(axis=1)
     assert total == pytest.approx(total[0], rel=1e-6)
     pace = 5e-9 * R_T * (1.0 / 5.1e-4 + 1.0 / 4.0e-4)
-    assert x[-1, 2] - x[-1, 3] == pytest.approx(4e5 * np.exp(-pace), rel=3e-3)  # the bristle gives a little
+    assert x[-1, 2] - x[-1, 3] == pytest.approx(4e5 * np.exp(-pace), rel=3e-3)  # the bristle yields a little
 
 
 @pytest.mark.parametrize("side", ["a", "b"])
@@ -102,7 +102,7 @@ def swing(rate: float, share: float = 0.0) -> np.ndarray:
     ("rate", "share", "exponent"), [(0.0, 0.0, 1.4), (1e3, 0.0, 1.0), (0.0, 0.5, 1.2), (0.0, 1.0, 1.0)]
 )
 def test_closed_gas_is_a_polytropic_spring(rate: float, share: float, exponent: float) -> None:
-    """p V^n stays, n = gamma without exchange, n = 1 with more of it than the motion is fast or with all at once."""
+    """p V^n is constant: n = gamma without heat exchange, n = 1 with a fast or an instant one."""
     p, volume = swing(rate, share).T
     kept = p * volume**exponent
     assert np.ptp(volume) > 0.1 * volume[0]
@@ -122,14 +122,14 @@ def test_gas_warmed_by_filling_cools_and_takes_the_pressure_along() -> None:
     x = model.simulate(voltage, model.state())
     warm = x[:, model.states.index("theta_a")]
     assert 30.0 < warm[149] < 0.4 * 293.0
-    assert warm[[399, 649]] == pytest.approx(warm[149] * np.exp([-1.0, -2.0]), abs=0.05)  # the sled gives a little
+    assert warm[[399, 649]] == pytest.approx(warm[149] * np.exp([-1.0, -2.0]), abs=0.05)  # the sled yields a little
     held = masses(model, x)[149, 0] * R_T / volumes(model, x[:, 0])[-1, 0]
     assert x[-1, 2] == pytest.approx(held, rel=1e-4)
     assert x[-1, 2] < 0.9 * x[149, 2]
 
 
 def test_emptied_gas_is_cold_and_follows_the_adiabat_of_what_stays() -> None:
-    """Emptied at once, what is left has expanded: T_g / T = (p / p_0)^((gamma - 1) / gamma)."""
+    """Emptied quickly, the remaining gas has expanded: T_g / T = (p / p_0)^((gamma - 1) / gamma)."""
     model = chambers("heat_exchange", rate=1.0).with_parameters({"arctan_flow.exhaust_coefficient": 5e-7})
     x = model.simulate(np.full(10, -10.0), model.state(p_a=6e5))
     ratio = x[-1, 2] / 6e5
@@ -140,7 +140,7 @@ def test_emptied_gas_is_cold_and_follows_the_adiabat_of_what_stays() -> None:
 
 @pytest.mark.parametrize(("rate", "share"), [(0.3, 0.0), (1.0, 0.0), (4.0, 0.0), (50.0, 0.0), (1.0, 0.3), (4.0, 1.0)])
 def test_heat_moves_no_mass(rate: float, share: float) -> None:
-    """p V / (R T_g) of both chambers changes by what flows through the ports: theta and p tell the same story."""
+    """p V / (R T_g) of both chambers changes by the flow through the ports: theta and p are consistent."""
     assert_mass_balance(chambers("heat_exchange", held=False, rate=rate, share=share), 1e-3)
 
 

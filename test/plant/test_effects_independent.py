@@ -1,4 +1,4 @@
-"""Effects against those of the rig under test/, written without sight of ours, where both hold the same law."""
+"""Effects against those of the independent rig under test/, where both have the same law."""
 
 import numpy as np
 import pytest
@@ -56,12 +56,12 @@ SAME = {
     "leakage_to_atmosphere": ({"leak_a": 5e-10, "leak_b": 2e-10}, {"conductance_a": 5e-10, "conductance_b": 2e-10}),
     "dead_volume": ({"volume_a": 7.1e-4, "volume_b": 4.5e-4}, {"volume_added_a": 2e-4, "volume_added_b": 5e-5}),
 }
-# A pure delay against its approximation, a lag of first order against one of second: what differs, passes as fast
+# A pure delay against its approximation, a first-order lag against a second-order one: differences vanish as fast
 ALIKE = {
     "line_delay": ({"line_delay": 0.012, "line_loss": 6e3}, {"delay": 0.012, "loss_pressure": 6e3}),
     "valve_spool_dynamics": ({"spool_lag": 0.01}, {"angular_frequency": 500.0, "damping_ratio": 2.5}),
 }
-CLOSE = np.array([5e-6, 4e-4, 5.0, 5.0])  # m, m/s, Pa, Pa: as close as the integrators are to each other
+CLOSE = np.array([5e-6, 4e-4, 5.0, 5.0])  # m, m/s, Pa, Pa: the difference of the integrators
 NEARLY = np.array([1e-4, 5e-3, 2.5e3, 4e3])
 
 
@@ -78,7 +78,7 @@ def theirs(fields: dict[str, float]) -> tuple[Machine, np.ndarray]:
 
 
 def run(model: Model, begin: np.ndarray) -> np.ndarray:
-    """The same manoeuvre of ours from the same state; the contact has rested as long as the rig's."""
+    """Our run of the same manoeuvre from the same state; the contact has rested as long as the rig's."""
     rested = {"age": 5.0} if "age" in model.states else {}
     start = model.state(**dict(zip(("y", "v", "p_a", "p_b", "z"), begin, strict=True)), **rested)
     return model.simulate(MANOEUVRE, start, step=5e-5)[:-1]
@@ -104,7 +104,7 @@ def test_the_same_law_gives_the_same_motion(case: str) -> None:
 
 
 @pytest.mark.parametrize("name", ALIKE)
-def test_approximations_move_the_piston_as_what_they_stand_for(name: str) -> None:
+def test_approximations_move_the_piston_like_the_exact_effects(name: str) -> None:
     fields, values = ALIKE[name]
     _, reading = theirs(fields)
     apart = np.abs(run(ours(name, values), reading[0])[:, :4] - reading[1:, :4])

@@ -48,7 +48,7 @@ def test_the_kernel_of_all_effects_is_that_of_the_machine(name: str) -> None:
 
 
 def test_neutral_parameters_change_nothing() -> None:
-    """At their neutral values effects are there and not felt: in no state and no signal."""
+    """At their neutral values effects have no influence on any state or signal."""
     neutral = {key: value for e in CATALOGUE if e.name not in AXIS.effects for key, value in neutral_values(e).items()}
     felt, usual = (
         model.outputs(run(model), np.tile(VOLTAGE, 2)) for model in (everything().with_parameters(neutral), AXIS)
@@ -67,7 +67,7 @@ def test_any_parameters_keep_every_step_stable(name: str) -> None:
 
 
 def test_switched_on_and_off_under_way() -> None:
-    """As a node does it: states keep their values, the axis goes on."""
+    """As a node does it: states keep their values, the axis continues."""
     stepper = Stepper(AXIS, AXIS.state(p_a=3e5, p_b=4e5))
     for model in (AXIS, everything(), AXIS):
         before = dict(zip(stepper.model.states, stepper.state, strict=True))

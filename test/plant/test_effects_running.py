@@ -1,6 +1,6 @@
 """Every effect in a kernel of its own, as a machine has it: compiled, equal to plain Python, dissipative, switched.
 
-A hundred kernels take minutes to compile; `test_effects_one_kernel.py` asks the same of one kernel of all effects.
+A hundred kernels take minutes to compile; `test_effects_one_kernel.py` tests the same on one kernel of all effects.
 """
 
 import numpy as np
@@ -46,7 +46,7 @@ def test_compiled_equals_python_to_the_bit(name: str) -> None:
 
 @pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE if neutral_values(effect)])
 def test_neutral_parameters_change_nothing(name: str) -> None:
-    """At its neutral values an effect is there and not felt: in no state and no signal, exactly or to rounding."""
+    """At its neutral values an effect has no influence on any state or signal, exactly or to rounding."""
     present = machine(name).with_parameters(neutral_values(EFFECTS[name]))
     absent = machine(name).with_effects([effect for effect in machine(name).effects if effect != name])
     if name not in AXIS.effects:
@@ -67,7 +67,7 @@ def test_any_parameters_keep_every_step_stable(name: str) -> None:
 
 @every_effect
 def test_switched_on_and_off_under_way(name: str) -> None:
-    """As a node does it: states keep their values, the axis goes on."""
+    """As a node does it: states keep their values, the axis continues."""
     stepper = Stepper(AXIS, AXIS.state(p_a=3e5, p_b=4e5))
     for model in (AXIS, machine(name), AXIS):
         before = dict(zip(stepper.model.states, stepper.state, strict=True))

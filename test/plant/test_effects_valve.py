@@ -126,7 +126,7 @@ def test_all_that_enters_a_line_leaves_it_one_delay_later(delay: float) -> None:
     voltage = np.repeat([0.0, 10.0, 0.0], [20, 300, 1680])
     x = model.simulate(voltage, model.state(p_b=5e5), sample_time=1e-4)
     ports, t = model.outputs(x, voltage), 1e-4 * np.arange(1, 2001)
-    sent = AXIS.outputs(x[:, : len(AXIS.states)], voltage)  # what the same valve gives at once
+    sent = AXIS.outputs(x[:, : len(AXIS.states)], voltage)  # flow of the same valve without delay
     for port in ("port_flow_a", "port_flow_b"):
         assert ports[port].sum() == pytest.approx(sent[port].sum(), rel=2e-3)
         late = (t * ports[port]).sum() / ports[port].sum() - (t * sent[port]).sum() / sent[port].sum()

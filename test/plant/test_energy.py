@@ -1,4 +1,4 @@
-"""The integrator neither feeds nor damps: what rings, rings as long as it should; gas and mass are conserved."""
+"""The integrator adds and removes no energy: oscillations decay as they should; gas and mass are conserved."""
 
 from pathlib import Path
 
@@ -43,7 +43,7 @@ def test_damped_ringing_loses_what_the_bristles_dissipate() -> None:
     speed = np.concatenate([[0.01], x[:, 1]])
     dissipated = 50.0 * np.sum((0.5 * (speed[1:] + speed[:-1])) ** 2) * 1e-5
     assert lost == pytest.approx(dissipated, rel=1e-3)
-    assert lost > 0.5 * 5.0 * 0.01**2 * 0.5  # there was something to lose
+    assert lost > 0.5 * 5.0 * 0.01**2 * 0.5  # there was energy to lose
 
 
 def test_closed_chambers_swing_as_an_adiabatic_spring() -> None:

@@ -1,4 +1,4 @@
-"""Many lanes of parameters along a measured motion: each the same to the bit as it would be alone."""
+"""Many lanes of parameters along a measured motion: each equal to the bit to a run alone."""
 
 from functools import cache
 
@@ -27,7 +27,7 @@ def motion() -> np.ndarray:
 
 
 def varied(model: Model, lanes: int) -> list[Model]:
-    """A model for each lane, every parameter another in each."""
+    """A model for each lane, with different parameters in each."""
     scales = np.random.default_rng(lanes).uniform(0.98, 1.0, (lanes, len(model.parameters)))
     rows = [dict(zip(model.parameters, (model.values * row).tolist(), strict=True)) for row in scales]
     return [Model(model.composition, row, model.name, model.library) for row in rows]
@@ -117,7 +117,7 @@ def test_arguments_are_left_as_they_are_and_may_be_read_only() -> None:
         array.setflags(write=False)
     found = AXIS.follow_lanes(*given, **HOW)
     assert_alone(found, 1, tuple(part[1] for part in AXIS.follow_lanes(motion(), VOLTAGE, [0.0], q, **HOW)))
-    assert len(AXIS.kernel.follow_lanes.signatures) == 1, "nothing has been compiled anew for them"
+    assert len(AXIS.kernel.follow_lanes.signatures) == 1, "nothing has been compiled again for them"
 
 
 def test_one_sample_and_no_lanes_are_allowed() -> None:
@@ -145,7 +145,7 @@ def test_one_sample_and_no_lanes_are_allowed() -> None:
         ({"step": 0.0}, r"must be positive"),
     ],
 )
-def test_lanes_that_do_not_fit_are_told(change: dict, sentence: str) -> None:
+def test_lanes_that_do_not_fit_are_reported(change: dict, sentence: str) -> None:
     given = {"measured": motion(), "voltage": VOLTAGE, "rest": [0.0], "parameters": np.tile(AXIS.values, (2, 1))}
     with pytest.raises(UsageError, match=sentence):
         AXIS.follow_lanes(**{**given, **HOW, **change})

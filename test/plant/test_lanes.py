@@ -1,4 +1,4 @@
-"""Lanes: many simulations at once, each the same to the bit as it would be alone."""
+"""Lanes: many simulations at once, each equal to the bit to a run alone."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def varied(model: Model, lanes: int) -> tuple[np.ndarray, np.ndarray, list[Model
 
 @pytest.mark.parametrize("lanes", [1, 5, 16, 17, 40])
 def test_lanes_equal_single_runs_to_the_bit(axis: Model, lanes: int) -> None:
-    """Whatever their number: sliding, sticking and reversing side by side."""
+    """For any number of lanes: sliding, sticking and reversing in parallel."""
     states, parameters, models = varied(axis, lanes)
     voltage = np.repeat([4.0, -3.0, 0.0, 6.0, -8.0], 40)
     out = axis.simulate_lanes(voltage, states, parameters)
@@ -54,7 +54,7 @@ def test_without_parameters_lanes_use_the_models_own(axis: Model) -> None:
     assert out[2].tobytes() == axis.simulate(np.full(20, 3.0), states[2]).tobytes()
 
 
-def test_windows_begin_where_they_are_told(axis: Model) -> None:
+def test_windows_begin_where_they_are_asked_to(axis: Model) -> None:
     """Multiple shooting: each lane takes its own part of one voltage record, at its own time."""
     voltage, first = np.random.default_rng(1).uniform(-6.0, 6.0, 120), [0, 30, 70]
     states, parameters, models = varied(axis, 3)
@@ -96,6 +96,6 @@ def test_a_lane_that_leaves_the_numbers_leaves_the_others_alone(axis: Model) -> 
         ({"voltage": [np.nan] * 10}, r"finite numbers"),
     ],
 )
-def test_lanes_that_do_not_fit_are_told(axis: Model, change: dict, sentence: str) -> None:
+def test_lanes_that_do_not_fit_are_reported(axis: Model, change: dict, sentence: str) -> None:
     with pytest.raises(UsageError, match=sentence):
         axis.simulate_lanes(**{"voltage": np.zeros(10), "states": np.tile(axis.state(), (2, 1)), **change})

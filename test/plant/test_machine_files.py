@@ -1,4 +1,4 @@
-"""Machine files: one file is the model of the commands and the parameters of the nodes, to the bit."""
+"""Machine files: one file gives the model of the commands and the parameters of the nodes, to the bit."""
 
 import json
 import subprocess
@@ -102,7 +102,7 @@ def test_ros_reads_the_same_doubles(tmp_path: Path, name: str) -> None:
 
 
 def test_numbers_with_bare_exponents_are_numbers(tmp_path: Path) -> None:
-    """YAML 1.1 takes 7e5 for text, ROS takes it for a number: so do we."""
+    """YAML 1.1 reads 7e5 as text, ROS as a number: so do we."""
     path = tmp_path / "machine.yaml"
     path.write_text(machine_text(load_model("axis")).replace("supply_pressure: 700000.0", "supply_pressure: 6e5"))
     assert yaml.safe_load("6e5") == "6e5"

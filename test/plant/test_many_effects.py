@@ -25,7 +25,7 @@ def test_all_effects_go_together() -> None:
 
 
 def test_all_at_their_neutral_values_are_the_axis() -> None:
-    """One kernel serves all models: what a machine lacks is turned down in it."""
+    """One kernel serves all models: effects that a machine lacks are switched off in it."""
     neutral = {key: value for e in CATALOGUE if e.name not in AXIS.effects for key, value in neutral_values(e).items()}
     x = everything().with_parameters(neutral).simulate(VOLTAGE, starts(1)[0])
     axis = AXIS.simulate(VOLTAGE, AXIS.state(y=-0.95, p_a=3e5, p_b=4e5))
@@ -33,7 +33,7 @@ def test_all_at_their_neutral_values_are_the_axis() -> None:
 
 
 def test_effects_may_be_listed_in_any_order() -> None:
-    """Where none rewrites what another has written, the order decides that of the states and nothing else."""
+    """If no effect overwrites another's signal, the order of effects decides only the order of states."""
     names = ["valve_spool_dynamics", "heat_exchange", "viscous_friction", "load_compliance", "supply_pressure_droop"]
     one, other = (in_python(AXIS.with_effects([*AXIS.effects, *given])) for given in (names, names[::-1]))
     x, z = (model.simulate(VOLTAGE[::10], model.state(p_a=3e5, p_b=4e5)) for model in (one, other))
@@ -60,7 +60,7 @@ def test_lanes_of_all_effects_equal_single_runs_to_the_bit() -> None:
 
 
 def test_lanes_of_all_effects_follow_a_motion_as_each_would_alone() -> None:
-    """To the bit, a measured motion that these effects do not make by themselves."""
+    """To the bit, along a measured motion that these effects would not produce themselves."""
     model, lanes = everything(), mild_variants(20)
     measured = AXIS.simulate(VOLTAGE, AXIS.state(y=-0.5, p_a=3e5, p_b=4e5), parts=2)[:, :4]
     rest, q = starts(1)[0, 4:], np.array([lane.values for lane in lanes])
@@ -82,7 +82,7 @@ def test_nothing_in_a_kernel_calls_out_and_lanes_are_vectors(entry: str) -> None
     else:
         model.follow_lanes(starts(2)[:, :4], VOLTAGE[:1], starts(1)[:, 4:], model.values[None])
     lanes = getattr(model.kernel, entry)
-    lanes.recompile()  # what comes from the cache does not tell what it is made of
+    lanes.recompile()  # a kernel from the cache has no inspectable code
     text = "\n".join(lanes.inspect_llvm().values())
     called = set(re.findall(r"call [^@\n]*@\"?([\w.]+)", text))
     assert not [

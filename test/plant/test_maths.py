@@ -1,4 +1,4 @@
-"""The elementary functions against the C library's, to a few units in the last place, and compiled against pure."""
+"""The elementary functions against the C library's, to a few units in the last place; compiled against plain."""
 
 import math
 from collections.abc import Callable
@@ -81,7 +81,7 @@ def test_signs_and_limits() -> None:
     assert maths.tanh(-40.0) == -1.0
 
 
-def test_damped_stands_in_for_relaxation_to_second_order_and_never_overshoots() -> None:
+def test_damped_approximates_relaxation_to_second_order_and_never_overshoots() -> None:
     a = spread(1e-6, 1e6)
     error = np.array([maths.damped(x) - maths.relaxation(x) for x in a])
     assert np.all(np.abs(error) <= a**2 / 6.0 + 1e-15)

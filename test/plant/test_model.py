@@ -1,4 +1,4 @@
-"""Models: what simulate and its relatives return, and what they say when it cannot be done."""
+"""Models: results of simulate and related methods, and their messages for invalid input."""
 
 import numpy as np
 import pytest
@@ -63,7 +63,7 @@ def test_nothing_to_simulate_gives_nothing(axis: Model, start: np.ndarray) -> No
         ({"parts": 0}, "do not fill whole samples"),
     ],
 )
-def test_what_cannot_be_simulated_is_told(axis: Model, start: np.ndarray, options: dict, sentence: str) -> None:
+def test_what_cannot_be_simulated_is_reported(axis: Model, start: np.ndarray, options: dict, sentence: str) -> None:
     with pytest.raises(UsageError, match=sentence):
         axis.simulate(**{"voltage": [1.0, 2.0], "state": start, **options})
 
@@ -83,7 +83,7 @@ def test_a_run_that_leaves_the_numbers_says_when_and_what_to_do(axis: Model) -> 
         ({"y": 2.0}, r"initial y is 2 m, outside the stroke of -1 to 1 m"),
     ],
 )
-def test_impossible_states_are_told(axis: Model, given: dict, sentence: str) -> None:
+def test_impossible_states_are_reported(axis: Model, given: dict, sentence: str) -> None:
     with pytest.raises(UsageError, match=sentence):
         axis.state(**given)
 
@@ -93,7 +93,7 @@ def test_states_begin_at_rest_and_at_the_pressure_of_the_atmosphere(axis: Model)
     assert alps.state(z=1e-6).tolist() == [0.0, 0.0, 8e4, 8e4, 1e-6]
 
 
-def test_chambers_without_volume_are_told(axis: Model) -> None:
+def test_chambers_without_volume_are_reported(axis: Model) -> None:
     tight = axis.with_parameters({"chambers.volume_b": 2.9e-4})
     with pytest.raises(UsageError, match=r"chamber b has no volume left.*sweeps 0.0003 m3"):
         tight.state()
@@ -105,7 +105,7 @@ def test_models_never_change(axis: Model) -> None:
     assert (heavy["piston.mass"], heavy.name) == (20.0, "heavy")
     assert axis.values.tobytes() == before.tobytes()
     with pytest.raises(TypeError):
-        axis.parameters["piston.mass"] = 1.0  # type: ignore[index]  # which is what is tried
+        axis.parameters["piston.mass"] = 1.0  # type: ignore[index]  # the test tries this
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_models_never_change(axis: Model) -> None:
         ({"piston.mass": 1 + 2j}, r"it takes a number"),
     ],
 )
-def test_bad_parameters_are_told(axis: Model, change: dict, sentence: str) -> None:
+def test_bad_parameters_are_reported(axis: Model, change: dict, sentence: str) -> None:
     with pytest.raises(UsageError, match=sentence):
         axis.with_parameters(change)
 
@@ -149,7 +149,7 @@ def test_outputs_hold_what_can_be_seen(axis: Model, start: np.ndarray) -> None:
 
 
 def test_following_a_run_gives_its_bristle_and_its_derivatives(axis: Model, start: np.ndarray) -> None:
-    """Measured states from a simulation: the bristle, which nobody measures, comes out of them."""
+    """Measured states from a simulation: the bristle, which is not measured, follows from them."""
     voltage = np.repeat([3.0, -3.0], 400)
     x = axis.simulate(voltage, start, sample_time=2.5e-4, step=2.5e-5)
     states, slopes = axis.follow(x[:, :4], voltage[1:], x[0, 4:], sample_time=2.5e-4, step=2.5e-5)
@@ -163,7 +163,7 @@ def test_following_a_run_gives_its_bristle_and_its_derivatives(axis: Model, star
 
 
 def test_following_does_not_let_the_measured_motion_run_on(axis: Model) -> None:
-    """A crawl at 1 um/s bends the bristle by the way gone, whatever force the pressures leave over."""
+    """A crawl at 1 um/s bends the bristle by the distance moved, independent of the pressure force."""
     t = np.arange(200) * 1e-3
     measured = np.column_stack([1e-6 * t, np.full_like(t, 1e-6), np.full_like(t, 7e5), np.full_like(t, 1e5)])
     states, _ = axis.follow(measured, np.zeros_like(t), [0.0], step=1e-3)
@@ -179,7 +179,7 @@ def test_no_misspelt_keyword_is_swallowed(axis: Model, method: str) -> None:
 
 
 def test_outputs_take_one_voltage_for_all_and_refuse_too_few(axis: Model) -> None:
-    """The kernel once read on behind a short array: whatever lay in memory was taken for voltages."""
+    """The kernel once read beyond the end of a short array and used other memory as voltages."""
     x = axis.simulate(VOLTAGE, axis.state())
     one, all_of_them = axis.outputs(x, 2.0), axis.outputs(x, np.full(len(x), 2.0))
     assert all(np.array_equal(one[name], all_of_them[name]) for name in one)

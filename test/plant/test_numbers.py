@@ -5,7 +5,7 @@ import pytest
 
 from pneumo_ros.plant import Model, load_model
 
-# The steady state knows no volumes: a stroke of 20 m leaves time to settle.
+# The steady state does not depend on volumes: a stroke of 20 m leaves time to settle.
 LONG = {"piston.stroke": 20.0, "chambers.volume_a": 4.2e-3, "chambers.volume_b": 3.1e-3}
 
 

@@ -1,4 +1,4 @@
-"""What the sensors read along lanes: as `outputs` says, with each lane's own parameters and the time of each sample."""
+"""Sensor readings along lanes: as `outputs` gives, with each lane's own parameters and the time of each sample."""
 
 from pathlib import Path
 

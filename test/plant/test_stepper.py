@@ -53,7 +53,7 @@ def test_effects_come_and_go_with_their_states(axis: Model, stepper: Stepper) ->
     stepper.replace(axis.with_effects(["dead_zone", "arctan_flow"]))
     assert stepper.state.tobytes() == kept.tobytes()
     stepper.replace(axis)
-    assert stepper.state.tolist() == [*kept, 0.0], "the bristle begins anew, at rest"
+    assert stepper.state.tolist() == [*kept, 0.0], "the bristle restarts at rest"
 
 
 def test_a_model_that_cannot_be_leaves_the_old_one(axis: Model, stepper: Stepper) -> None:
@@ -78,14 +78,14 @@ def test_after_a_numerical_error_the_last_good_state_stands(axis: Model, stepper
 
 
 @pytest.mark.parametrize("voltage", [float("nan"), float("inf")])
-def test_a_voltage_that_is_no_number_is_refused(stepper: Stepper, voltage: float) -> None:
+def test_a_voltage_that_is_not_a_number_is_refused(stepper: Stepper, voltage: float) -> None:
     before = stepper.state.copy()
     with pytest.raises(UsageError, match=f"voltage is {voltage}"):
         stepper.advance(voltage)
     assert stepper.state.tobytes() == before.tobytes()
 
 
-def test_resetting_begins_anew(axis: Model, stepper: Stepper) -> None:
+def test_resetting_starts_again(axis: Model, stepper: Stepper) -> None:
     first = advanced(stepper, np.full(50, 5.0))
     stepper.reset(axis.state(y=0.1, p_a=3e5, p_b=4e5))
     assert stepper.time == 0.0
@@ -100,7 +100,7 @@ def test_a_state_given_is_not_written_to(axis: Model) -> None:
     assert given.tobytes() == axis.state().tobytes()
 
 
-def test_states_that_do_not_fit_are_told(axis: Model) -> None:
+def test_states_that_do_not_fit_are_reported(axis: Model) -> None:
     with pytest.raises(UsageError, match="must hold 5 finite numbers"):
         Stepper(axis, np.zeros(4))
     with pytest.raises(UsageError, match="must be positive"):

@@ -1,4 +1,4 @@
-"""A user's own file of effects: plain text in, a compiled kernel out, edits seen, nothing to import but two names."""
+"""A user's file of effects: plain text gives a compiled kernel, edits take effect, and only two names are imported."""
 
 import os
 import subprocess
@@ -83,7 +83,7 @@ def test_plain_python_mode_runs_the_same_text() -> None:
     assert bits == compiled.tobytes().hex()
 
 
-def test_missing_effects_file_is_told() -> None:
+def test_missing_effects_file_is_reported() -> None:
     with pytest.raises(UsageError, match=r"nowhere\.py does not exist"):
         Library(["nowhere.py"])
 

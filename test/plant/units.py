@@ -1,4 +1,4 @@
-"""Numbers that carry their dimension, so that an effect's equations can be run as they stand and checked.
+"""Numbers with a dimension, so that an effect's unchanged equations can be run and checked.
 
 A value of exactly zero fits any dimension: `max(x, 0.0)` and `opening = 0.0` mean what they should.
 """
@@ -95,7 +95,7 @@ _UNITS = {
 
 
 def unit(text: str) -> Quantity:
-    """The unit that a text such as 'kg/(s*sqrt(Pa))' or 'N s2/m2' means; ValueError when it means none."""
+    """The unit of a text such as 'kg/(s*sqrt(Pa))' or 'N s2/m2'; ValueError when it is not a unit."""
     powers = re.sub(r"\b([A-Za-z]+)(\d+)\b", r"\1**\2", text)
     products = re.sub(r"(?<=[\w)])\s+(?=[\w(])", "*", powers)
     try:

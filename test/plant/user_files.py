@@ -1,4 +1,4 @@
-"""Effects as a user writes them: their text, and the axis with them."""
+"""Effects as a user writes them: their text, and the axis with these effects."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ def composed(folder: Path, body: str, *names: str, base: tuple[str, ...] = AXIS.
 
 
 def one(reads: str, *lines: str, name: str = "Own", more: str = "") -> str:
-    """Text of an effect: class, what it reads, and the lines of its equations; the last names what it writes."""
+    """Text of an effect: class, inputs, and the lines of its equations; the last one names its outputs."""
     body = "\n".join(f"        {line}" for line in lines)
     return f'\nclass {name}(Effect):\n    """An effect for a test."""\n{more}\n    def equations({reads}):\n{body}\n'
 

@@ -1,4 +1,4 @@
-"""What the model finds wrong with a run; and that no effect a machine may hide is taken for such a mistake."""
+"""Recording mistakes that the model finds in a run; no hidden effect of a machine is mistaken for one."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -15,7 +15,7 @@ from pneumo_ros.reading.plausible import check_run
 from pneumo_ros.records import read_recording
 from pneumo_ros.runs.run import Run, make_run
 
-# Of all effects the rig can hide, with five kinds of runs each, those that come nearest to one of the mistakes, or make
+# Of all effects the rig can hide, with five kinds of runs each, those most similar to one of the mistakes, or that make
 # the piston wait longest
 NEAREST = [
     ("valve_null_offset", 0.3, "train_slow"),
@@ -37,19 +37,19 @@ def test_a_hidden_effect_is_no_mistake(effect: str, size: float, name: str) -> N
 
 
 def test_a_better_fit_of_one_equation_proves_nothing() -> None:
-    """Friction that a mistake explains by luck, while it spoils the equation of a chamber."""
+    """Friction that a mistake explains by chance, while it worsens the equation of a chamber."""
     assert check_run(load_model(), rig("constant_m0830", 1, "pressure_dependent_friction:lips")[2]) == []
 
 
 @pytest.mark.parametrize("effect", ["", "spring_load"])
 def test_a_piston_that_never_moves_is_said_to_once(effect: str) -> None:
-    """A valve that does not open is no mistake, nor a spring that holds; but nothing for identification either."""
+    """A closed valve or a holding spring is no mistake, but the run is useless for identification."""
     (note,) = check_run(load_model(), rig("constant_p0785", 7, effect)[2])
     assert note.startswith("the piston does not move: its position stays at -0.")
 
 
 def test_no_recording_of_the_rig_alarms() -> None:
-    """Neither the shared ones, where they are, nor the driven machine among them."""
+    """Neither the shared recordings, if present, nor those of the driven machine."""
     folders = sorted(path for path in RECORDED.parent.glob("*/*") if (path / "metadata.yaml").exists())
     for path in folders:
         assert notes(path) == [], path
@@ -57,14 +57,14 @@ def test_no_recording_of_the_rig_alarms() -> None:
 
 
 def notes(path: Path) -> list[str]:
-    """Everything that is said of a recording."""
+    """All notes about a recording."""
     recording = read_recording(path)
     run = make_run(recording)
     return [*recording.warnings, *check_run(load_model("emps" if run.force_driven else "axis"), run)]
 
 
 def notes_of(run: Run) -> list[str]:
-    """What the default machine says of a run."""
+    """The default machine's notes about a run."""
     return check_run(load_model(), run)
 
 
@@ -96,8 +96,8 @@ def test_a_mistake_is_found_with_and_without_a_hidden_effect(word: str, name: st
     assert "N (momentum)" in str(caught.value)
 
 
-def test_gauge_pressures_that_never_fall_low_are_told_by_the_model() -> None:
-    """Both chambers stay above 2 bar, so no single reading tells."""
+def test_gauge_pressures_that_never_fall_low_are_found_by_the_model() -> None:
+    """Both chambers stay above 2 bar, so no single reading shows it."""
     model, run = tense()
     assert min(run.pressure_a.min(), run.pressure_b.min()) > 2.0e5
     assert check_run(model, run) == []

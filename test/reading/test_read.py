@@ -1,4 +1,4 @@
-"""Recordings on disk as runs: names, refusals, cuts, and what is said of them."""
+"""Recordings on disk as runs: names, refusals, cuts and notes."""
 
 import shutil
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A rig's recording for the tests, message by message, so that each can be lost, shifted or spoilt."""
+"""A rig's recording for the tests, message by message, so that each can be lost, shifted or damaged."""
 
 from pathlib import Path
 
@@ -49,7 +49,7 @@ def write(path: Path, content: Streams, namespace: str = "", types: dict[str, st
 
 
 def write_in_order(path: Path, content: Streams) -> Path:
-    """A bag whose k-th messages of all topics were written one after another, whatever the recorder's clock said."""
+    """A bag with the k-th messages of all topics written one after another, regardless of the recorder's clock."""
     with BagWriter(path, [BagTopic(f"/{name}", TYPES[name]) for name in content]) as writer:
         for index in range(N):
             for name, (times, rows) in content.items():

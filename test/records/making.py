@@ -103,7 +103,7 @@ def assert_same(topics: dict[str, Any], expected: dict[str, list[tuple[int, Any]
 
 
 def assert_equal(value: Any, expected: Any, where: str) -> None:
-    """Equal as rosbags has it; NaN equals NaN, a tuple of strings equals their list."""
+    """Equal to rosbags' value; NaN equals NaN, a tuple of strings equals their list."""
     if isinstance(expected, list):
         assert len(value) == len(expected), where
         for left, right in zip(value, expected, strict=True):

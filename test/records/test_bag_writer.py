@@ -1,4 +1,4 @@
-"""Bags written here: read by rosbags and by this package, whole at any time, never over another."""
+"""Bags of this writer: read by rosbags and by this package, whole at any time, never overwriting another."""
 
 import os
 import signal
@@ -120,7 +120,7 @@ def test_a_full_disk_is_said_in_words(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_leaves_what_was_there_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The system takes some of what is written, over the old end of the file, and then no more."""
+    """The system writes part of the data, over the old end of the file, and then refuses more."""
     path, real = tmp_path / "bag", os.pwrite
     room = [1000]
 

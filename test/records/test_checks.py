@@ -1,4 +1,4 @@
-"""Recordings read as what they are, and what their numbers alone give away."""
+"""Recordings converted to the right units and signs, and mistakes that their numbers alone show."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def axis(**changes: object) -> Recording:
 
 @pytest.mark.parametrize("words", [(word,) for word in WORDS] + [("bar", "gauge", "mm", "swapped-chambers")])
 def test_what_was_recorded_otherwise_is_put_right(words: tuple[str, ...]) -> None:
-    """Recorded as the words say, from what is right, and read back."""
+    """A correct recording, changed as `words` say, written and read back."""
     right = axis()
     unit = next((PRESSURE_UNITS[word] for word in words if word in PRESSURE_UNITS), 1.0)
     below = ATMOSPHERE if "gauge" in words else 0.0
@@ -95,8 +95,8 @@ def test_words_that_are_refused(text: str, said: str) -> None:
 @pytest.mark.parametrize("unit", PRESSURE_UNITS)
 @pytest.mark.parametrize("gauge", [False, True])
 @pytest.mark.parametrize("size", [0.3, 1.0, 1.3])
-def test_units_are_told_by_the_size_of_the_numbers(unit: str, gauge: bool, size: float) -> None:
-    """From axes at a supply of 2.6 bar to those at 9 bar, and the advice is the option that helps."""
+def test_units_are_recognised_by_their_numbers(unit: str, gauge: bool, size: float) -> None:
+    """For supplies of 2.6 to 9 bar; the message names the option that helps."""
     right = axis()
     a, b = (1e5 + size * (p - 1e5) for p in (right.pressure_a, right.pressure_b))
     wrong = replace(
@@ -121,7 +121,7 @@ def test_an_offset_of_a_sensor_is_no_gauge_pressure(offset: float) -> None:
 
 
 def ticks(*steps: float) -> np.ndarray:
-    """Times [ns] that go on by these steps [s]."""
+    """Times [ns] with these steps [s]."""
     return np.cumsum([0, *steps]) * 1e9
 
 

@@ -1,4 +1,4 @@
-"""Several axes, joints or recordings in one place: the choice is made where it is clear, and asked for where not."""
+"""Several axes, joints or recordings in one place: a clear choice is made, otherwise the user is asked."""
 
 from pathlib import Path
 
@@ -39,7 +39,7 @@ def two_axes(path: Path) -> Path:
     return write(path, merged, types={name: TYPES[name.split("/", 1)[1]] for name in merged})
 
 
-def test_several_axes_must_be_told_apart(tmp_path: Path) -> None:
+def test_several_axes_must_be_distinguished(tmp_path: Path) -> None:
     path = two_axes(tmp_path / "run")
     with pytest.raises(DataError, match=r"2 axes: /left, /right. Say which: --namespace /left"):
         read_recording(path)
@@ -67,7 +67,7 @@ def test_the_piston_among_other_joints(tmp_path: Path, names: list[list[str]]) -
     np.testing.assert_array_equal(recording.position, expected)
 
 
-def test_joints_must_be_told_apart(tmp_path: Path) -> None:
+def test_joints_must_be_distinguished(tmp_path: Path) -> None:
     position = np.random.default_rng(0).normal(size=(N, 2))
     content = streams()
     content[JOINT_STATES] = (STAMP, joint_states([["arm", "rod"]], position))

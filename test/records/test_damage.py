@@ -1,4 +1,4 @@
-"""Recordings that broke: cut anywhere, damaged inside, without metadata, their recorder killed."""
+"""Broken recordings: cut anywhere, damaged inside, without metadata, or with a killed recorder."""
 
 import shutil
 from pathlib import Path
@@ -31,7 +31,7 @@ def written_by_mcap(path: Path, compression: CompressionType = CompressionType.Z
 
 
 def payloads(path: Path) -> tuple[list[tuple[str, int, bytes]], list[str]]:
-    """Everything a bag gives, and its warnings."""
+    """All messages of a bag, and its warnings."""
     bag = Bag(path)
     found = [(message.channel.topic, message.log_time, message.payload) for message in bag.messages()]
     return found, bag.warnings
@@ -86,7 +86,7 @@ def test_a_damaged_chunk_costs_itself_only(tmp_path: Path) -> None:
 
 
 def test_random_damage_never_surprises(tmp_path: Path) -> None:
-    """Whatever is wrong in a file, the answer is messages or a DataError."""
+    """For any damage of a file, the answer is messages or a DataError."""
     whole = written_by_mcap(tmp_path / "bag.mcap").read_bytes()
     rng = np.random.default_rng(3)
     for _ in range(60):
@@ -170,7 +170,7 @@ def test_times_before_1970_are_times(tmp_path: Path) -> None:
 
 
 def written_with_times(source: Path, target: Path, times: list[int]) -> Path:
-    """The messages of `source` at other times, below zero as the file's unsigned numbers have it."""
+    """The messages of `source` at other times; negative ones as the file's unsigned numbers."""
     with target.open("wb") as stream:
         writer = Writer(stream)
         writer.start(profile="ros2")

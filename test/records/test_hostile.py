@@ -1,4 +1,4 @@
-"""Recordings that were made to harm: short files that stand for more than any memory holds, types without an end."""
+"""Malicious recordings: short files that expand beyond any memory, and endless types."""
 
 import struct
 from functools import partial
@@ -27,7 +27,7 @@ PAYLOAD = b"\0\1\0\0" + struct.pack("<16d", *range(16))
 @pytest.mark.parametrize("kind", list(PACKERS))
 def test_what_would_fill_the_memory_is_read_in_part(kind: str) -> None:
     packed = PACKERS[kind](bytes(ZEROS))
-    for size in (1000, ZEROS):  # what the chunk says of itself
+    for size in (1000, ZEROS):  # the size in the chunk's header
         found = decompress(memoryview(packed), kind.partition(",")[0], size, Path("x"))
         limit = max(1 << 26, 200 * len(packed))
         assert limit <= len(found) < min(1.1 * limit, ZEROS) + (1 << 26)
@@ -60,7 +60,7 @@ def test_types_without_an_end_are_refused(definition: str, said: str, tmp_path: 
 
 
 @pytest.mark.parametrize("qos", ["7", "a", "[1, a]", "{durability: 1}", "[" * 5000, "a: 2001-99-99"])
-def test_a_quality_of_service_that_is_none(qos: str, tmp_path: Path) -> None:
+def test_an_invalid_quality_of_service(qos: str, tmp_path: Path) -> None:
     path = tmp_path / "x.mcap"
     path.write_bytes(mcap_file(axis(), qos=qos))
     assert not any(
@@ -79,7 +79,7 @@ def test_a_description_that_no_parser_bears(text: str, tmp_path: Path) -> None:
 
 
 def test_a_sensor_that_spoke_once(tmp_path: Path) -> None:
-    """A single message leaves no gaps, and little to use."""
+    """A single message has no gaps, and little usable data."""
     spoke = [at for topic, at, _ in axis() if topic == "chamber_b/pressure"][30]
     path = tmp_path / "x.mcap"
     path.write_bytes(mcap_file([one for one in axis() if one[0] != "chamber_b/pressure" or one[1] == spoke]))

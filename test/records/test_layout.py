@@ -1,4 +1,4 @@
-"""A layout learnt from one message decodes the others, and tells those that differ."""
+"""A layout learnt from one message decodes the others, and recognises those that differ."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def test_messages_that_differ_in_more_than_numbers_do_not_match(other: bytes) ->
     size = max(len(payload), len(other))
     if len(other) == len(payload):
         assert layout.matches(rows(payload, other, payload)).tolist() == [True, False, True]
-    else:  # another length is told apart before
+    else:  # another length is recognised before
         assert layout.length != size
 
 

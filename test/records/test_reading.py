@@ -1,4 +1,4 @@
-"""From a recording to signals: which topics there must be, what is left out, and in which words it is said."""
+"""From a recording to signals: required topics, left-out messages, and their reports."""
 
 from pathlib import Path
 from typing import Any
@@ -67,7 +67,7 @@ def test_what_is_missing_is_named(tmp_path: Path, lost: str, said: str) -> None:
     path = write(tmp_path / "run", content, "/axis")
     with pytest.raises(DataError, match=said) as caught:
         read_recording(path)
-    assert "/axis/chamber_b/pressure" in str(caught.value)  # what there is
+    assert "/axis/chamber_b/pressure" in str(caught.value)  # the existing names
     assert "Needed: joint_states, chamber_a/pressure" in str(caught.value)
 
 
@@ -91,7 +91,7 @@ def test_values_that_are_not_finite_are_named_and_left_out(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("text", ["{", "[1]", "3"])
-def test_a_description_that_is_none(tmp_path: Path, text: str) -> None:
+def test_an_invalid_description(tmp_path: Path, text: str) -> None:
     content = streams()
     content[DESCRIPTION] = (STAMP[:1], [encoding.text(text)])
     recording = read_recording(write(tmp_path / "run", content))

@@ -1,4 +1,4 @@
-"""One time base: stamps that stumble, gaps, topics that start later or run on another clock."""
+"""One time base: irregular stamps, gaps, topics that start later or run on another clock."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def test_stamps_that_do_not_increase_are_dropped_and_counted(tmp_path: Path) -> 
     stamp[100] = stamp[99]
     stamp[200:202] = stamp[150]
     content = streams(stamp)
-    # recorded in order all the same, as a live recorder would
+    # still recorded in order, as by a live recorder
     recording = read_recording(write(tmp_path / "run", {name: (STAMP, rows) for name, (_, rows) in content.items()}))
     assert np.all(np.diff(recording.time) > 0)
     assert len(recording) == N - 3
@@ -93,7 +93,7 @@ HALF = np.where(np.arange(N) < 150, 0, SECOND)  # added from message 150 on, tim
     ],
 )
 def test_clocks_that_were_set(tmp_path: Path, stamps: float, recorded: float, words: str) -> None:
-    """The longest part without a jump is used, with the commands of that part, and it is said."""
+    """The longest part without a jump is used, with the commands of that part, and this is reported."""
     stamp, log = ((STAMP + HALF * shift).astype(np.int64) for shift in (stamps, recorded))
     recording = read_recording(write_in_order(tmp_path / "run", streams(stamp, log)))
     assert len(recording) == N - 150

@@ -14,7 +14,7 @@ from pneumo_ros.records.message_types import trimmed
 from pneumo_ros.records.topics import MOST_LAYOUTS
 
 CONTRACT = {f"/axis/{name}": kind for name, kind in TYPES.items()} | GLOBAL_TYPES
-# Fixed arrays, arrays of messages, byte sequences, booleans, nothing at all
+# Fixed arrays, arrays of messages, byte sequences, booleans, an empty message
 OTHERS = [
     "std_msgs/msg/Empty", "std_msgs/msg/Float64MultiArray", "std_msgs/msg/UInt8MultiArray", "std_msgs/msg/Bool",
     "std_msgs/msg/Byte", "std_msgs/msg/Char", "sensor_msgs/msg/Imu", "sensor_msgs/msg/BatteryState",
@@ -129,7 +129,7 @@ def test_stray_bytes_at_the_end_of_messages(tmp_path: Path, kind: str) -> None:
     assert [trimmed(data, kind) for _, _, _, data in stray] == [data for _, _, _, data in messages]
 
 
-def test_a_message_that_is_none_of_its_type(tmp_path: Path) -> None:
+def test_a_message_that_does_not_fit_its_type(tmp_path: Path) -> None:
     good = serialized(STORE.types["std_msgs/msg/Float64"](data=1.0))
     messages = [("/n", "std_msgs/msg/Float64", START + i, data) for i, data in enumerate([good, good[:9], good])]
     data = read_topics(write_rosbags(tmp_path / "bag", messages))["/n"]

@@ -1,4 +1,4 @@
-"""A program to be killed: writes numbered messages into a bag at some 2 kHz and says when each is written."""
+"""A program to be killed: writes numbered messages into a bag at about 2 kHz and prints when each is written."""
 
 import sys
 import time

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-# Nothing of the browser's own goes out, so that every request that does is the page's
+# The browser sends no requests of its own, so that every request is the page's
 QUIET = (
     "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
     "--disable-component-update", "--disable-sync",
@@ -47,7 +47,7 @@ def chromium() -> Iterator[Any]:
 
 
 class Visit:
-    """A page that was opened, without a network, and all that it asked for and complained of."""
+    """An opened page without a network, with its requests and error messages."""
 
     def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True)
@@ -65,7 +65,7 @@ class Visit:
         self.page.context.close()
 
     def wait(self, expression: str, argument: Any = None) -> None:
-        """Until an expression is true; the page's policy forbids what Playwright's own waiting does inside it."""
+        """Wait until an expression is true; the page's policy forbids the script of Playwright's own waiting."""
         for _ in range(2400):
             if self.page.evaluate(expression, argument):
                 return
@@ -79,17 +79,17 @@ class Visit:
             self.wait("id => document.getElementById(id).dataset.drawn === 'yes'", chart)
 
     def traces(self, chart: str) -> list[dict[str, Any]]:
-        """What a chart shows now: name, visible, x and y of every trace."""
+        """The present content of a chart: name, visible, x and y of every trace."""
         pick = "t => ({name: t.name, visible: t.visible, x: [...t.x], y: [...t.y]})"
         found: list[dict[str, Any]] = self.page.evaluate(f"id => document.getElementById(id).data.map({pick})", chart)
         return found
 
     def range(self, chart: str) -> list[float]:
-        """What the x axis of a chart spans."""
+        """The range of the x axis of a chart."""
         return [float(v) for v in self.page.evaluate("id => document.getElementById(id).layout.xaxis.range", chart)]
 
     def wait_for_range(self, chart: str, low: float, high: float) -> None:
-        """Until the x axis of a chart spans about this."""
+        """Wait until the x axis of a chart spans about this range."""
         near = "r => Math.abs(r[0] - low) + Math.abs(r[1] - high) < 0.05"
         span = "document.getElementById(id).layout.xaxis.range"
         self.wait(f"([id, low, high]) => ({near})({span})", [chart, low, high])

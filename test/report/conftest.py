@@ -1,4 +1,4 @@
-"""One page for all tests of reports; every test opens it anew."""
+"""One page for all tests of reports; every test opens it again."""
 
 from collections.abc import Iterator
 from typing import Any

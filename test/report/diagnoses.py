@@ -1,4 +1,4 @@
-"""Diagnoses to report: real searches, short because the catalogue is, of the model's own runs with sensor noise."""
+"""Diagnoses to report: real searches in a short catalogue, of the model's own runs with sensor noise."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -41,7 +41,7 @@ class Few(Library):
         self.candidates = candidates
 
     def names(self) -> list[str]:
-        """The candidates alone; what the machine has is found by its own name all the same."""
+        """Only the candidates; effects of the machine are still found by name."""
         return list(self.candidates)
 
 
@@ -62,7 +62,7 @@ def diagnose_anew(verdict: str) -> Outcome:
 
 
 def recorded(truth: Model, kind: str, name: str, seed: int, seconds: float = 6.0) -> Run:
-    """What the sensors show of a machine moved by `identify.making.voltage`."""
+    """The sensor signals of a machine moved by `identify.making.voltage`."""
     rng = np.random.default_rng(seed)
     time = np.arange(round(seconds * 1000)) * 1e-3
     held = np.repeat(voltage(kind, time + seed)[:-1], PARTS)

@@ -20,7 +20,7 @@ SECONDS = 6.0
 
 @lru_cache(maxsize=1)
 def compared() -> tuple[Model, Comparison]:
-    """A machine with too little friction against two runs, one of which is named to do harm."""
+    """A machine with too little friction against two runs, one of them with a malicious name."""
     model, _, first = own("sweep", seconds=SECONDS)
     wrong = model.with_parameters({"lugre_friction.coulomb_friction": 60.0})
     second = own("steps", seconds=SECONDS)[2]
@@ -28,13 +28,13 @@ def compared() -> tuple[Model, Comparison]:
 
 
 def result_of(comparison: Comparison) -> dict[str, Any]:
-    """The JSON of a comparison, as it is written."""
+    """The JSON of a comparison, as in its file."""
     result: dict[str, Any] = plain(comparison.as_dict())
     return result
 
 
 def report_of(model: Model, comparison: Comparison) -> Report:
-    """The report of a comparison, with an origin that names nothing."""
+    """The report of a comparison, with an empty origin."""
     return comparison_report(result_of(comparison), comparison, model, provenance([], "axis", ["compare"]))
 
 
@@ -44,7 +44,7 @@ def many(comparison: Comparison, runs: int, times: int) -> Comparison:
 
 
 def longer(run: RunComparison, times: int) -> RunComparison:
-    """A run repeated; noise does not repeat within one, so that it packs as badly as it should."""
+    """A repeated run with noise that does not repeat, so that it compresses as badly as a real one."""
 
     def tile(values: np.ndarray) -> np.ndarray:
         return np.tile(values, times)

@@ -1,4 +1,4 @@
-"""The report of a diagnosis in a real browser: all three verdicts, and numbers that are the outcome's."""
+"""The report of a diagnosis in a real browser: all three verdicts, and the numbers of the outcome."""
 
 import json
 import re
@@ -40,7 +40,7 @@ def followed() -> str:
 
 @pytest.fixture(scope="module")
 def opened(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Open]:
-    """The page of a verdict in a browser: one for all tests, which leave it as they found it."""
+    """The page of a verdict in a browser: one for all tests, which leave it unchanged."""
     folder, visits = tmp_path_factory.mktemp("diagnosis"), dict[str, Visit]()
 
     def visit(verdict: str) -> Visit:

@@ -1,4 +1,4 @@
-"""Figures as files: what the page shows, as PNG and SVG."""
+"""Figures as files: the charts of the page, as PNG and SVG."""
 
 import re
 from pathlib import Path
@@ -33,7 +33,7 @@ def test_figures_hold_curves_and_names_as_they_are(drawn: Path) -> None:
     text = (drawn / "run-2-position_m.svg").read_text(encoding="utf-8")
     assert "<img" not in text
     assert "<script" not in text
-    assert "$x_2$" in text  # no formula, and nothing cut out
+    assert "$x_2$" in text  # no formula, and nothing removed
     assert max(map(len, re.findall(r'<path d="([^"]*)"', text))) > 10_000
 
 

@@ -1,4 +1,4 @@
-"""Text and data of a page hold nothing that a browser reads as markup."""
+"""Text and data of a page contain no markup for a browser."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The page as text: its size, its policy, and what becomes of names."""
+"""The page as text: its size, its policy, and its treatment of names."""
 
 import json
 import re
@@ -64,7 +64,7 @@ def test_a_policy_forbids_to_load_anything_and_to_run_anything_else() -> None:
 
 
 class Elements(HTMLParser):
-    """Names of the elements and attributes of a page as a browser reads it, and where its links lead."""
+    """Names of the elements and attributes of a page as a browser reads it, and the targets of its links."""
 
     def __init__(self, text: str) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Plots in a real browser: drawn with what was measured, zooming together."""
+"""Plots in a real browser: they show the measured data and zoom together."""
 
 import pytest
 from report.browser import Visit

@@ -1,4 +1,4 @@
-"""A page that can be read: in light and dark, wide and narrow, by eye, by keyboard and by ear."""
+"""A readable page: light and dark, wide and narrow, on screen, by keyboard and by screen reader."""
 
 from itertools import pairwise
 
@@ -9,7 +9,7 @@ from pneumo_ros.report.heat import STEPS
 POSITION = "run-1-position_m"
 TICK = f"getComputedStyle(document.querySelector('#{POSITION} .xtick text')).fill"
 
-# Text of less than 4.5 : 1 against what is behind it (WCAG 2.2, 1.4.3), plots aside
+# Text with a contrast below 4.5 : 1 to its background (WCAG 2.2, 1.4.3), except in plots
 CONTRASTS = """() => {
   const parse = (text) => [...text.match(/[\\d.]+/g).map(Number), 1].slice(0, 4);
   const line = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);

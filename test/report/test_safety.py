@@ -1,4 +1,4 @@
-"""A page from untrusted names in a real browser: it asks for nothing, and runs nothing but itself."""
+"""A page from untrusted names in a real browser: it sends no requests and runs only its own script."""
 
 from pathlib import Path
 

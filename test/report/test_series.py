@@ -1,4 +1,4 @@
-"""Long series come back as they went in, to their resolution; the browser's side is tested in test_plots."""
+"""Packed long series are restored to their resolution; the browser's side is tested in test_plots."""
 
 import base64
 import zlib
@@ -11,7 +11,7 @@ from pneumo_ros.report.series import encode, extremes
 
 
 def decoded(packed: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """What the page's script makes of a packed series."""
+    """A packed series, unpacked as by the page's script."""
 
     def unpack(part: dict[str, Any]) -> np.ndarray:
         raw = np.frombuffer(zlib.decompress(base64.b64decode(part["data"])), dtype=np.uint8)

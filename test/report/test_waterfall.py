@@ -1,4 +1,4 @@
-"""The waterfall: a bar for each model, and pale what each step removed."""
+"""The waterfall: a bar for each model, and a pale part removed by each step."""
 
 import numpy as np
 import pytest

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-if not __package__:  # run as a folder: its parent is where the package is found
+if not __package__:  # run as a folder: its parent contains the package
     sys.path[0] = str(Path(__file__).resolve().parents[1])
 
 from rig.command import main

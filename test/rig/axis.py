@@ -1,8 +1,8 @@
 """The equations of the base machine, in the variables of the energy balance.
 
-Chamber pressures are carried as s = p (V / V_0)^gamma, which adiabatic motion leaves alone: the energy balance of a
-chamber without heat exchange, d(p V^gamma)/dt = gamma V^(gamma - 1) R T q, needs no velocity. The bristle is carried as
-its force w = sigma_0 z. Nothing here is compiled, and nothing is written for speed.
+Chamber pressures are states s = p (V / V_0)^gamma, which adiabatic motion does not change: the energy balance of a
+chamber without heat exchange, d(p V^gamma)/dt = gamma V^(gamma - 1) R T q, needs no velocity. The bristle's state is
+its force w = sigma_0 z. Nothing here is compiled or optimised for speed.
 """
 
 import math

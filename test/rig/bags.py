@@ -29,7 +29,7 @@ def _header() -> object:
 
 
 def _templates() -> dict[str, bytes]:
-    """One message of each topic, with marks where stamp and value go."""
+    """One message of each topic, with marks in place of stamp and value."""
     empty = np.empty(0)
     joint = {"name": ["piston"], "position": np.array([_MARK]), "velocity": empty, "effort": empty}
     pressure = {"fluid_pressure": _MARK, "variance": PRESSURE_NOISE**2}

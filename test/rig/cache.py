@@ -1,4 +1,4 @@
-"""Keeps numba's cache honest: it looks at the file of the cached function only, not at the files that one calls."""
+"""Keeps numba's cache valid: numba checks only the file of the cached function, not the files it calls."""
 
 from pathlib import Path
 

@@ -16,7 +16,7 @@ _SETTLING = 1000  # samples of closed valve before a recording starts
 
 
 class Case(NamedTuple):
-    """What is recorded, and why the recordings look as they do."""
+    """The recordings, and the truth behind them."""
 
     machine: Machine
     rough: bool
@@ -65,5 +65,5 @@ def write_case(case: Case, folder: Path, names: Sequence[str] = RUNS, truth: Pat
 
 
 def runs_for(case: Case) -> tuple[str, ...]:
-    """The usual runs, and runs to the ends of the stroke where that is where the machine differs."""
+    """The usual runs, and runs to the ends of the stroke if the machine differs there."""
     return (*RUNS, "train_ends", "holdout_ends") if case.machine.cushion < 1.0 else RUNS

@@ -43,7 +43,7 @@ def _arguments() -> argparse.ArgumentParser:
         metavar="PATTERN",
         help=f"runs to make, of {', '.join(ALL_RUNS)}; a * takes runs to the ends only where the effect shows there",
     )
-    parser.add_argument("--quiet", action="store_true", help="say nothing of what is hidden")
+    parser.add_argument("--quiet", action="store_true", help="do not print the hidden effects")
     return parser
 
 
@@ -64,7 +64,7 @@ def _runs(case: Case, patterns: Sequence[str] | None) -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write a case folder and its truth; 0 when done, 2 for a wrong wish."""
+    """Write a case folder and its truth; returns 0, or 2 for wrong arguments."""
     parser = _arguments()
     wanted = parser.parse_args(arguments)
     try:

@@ -1,4 +1,4 @@
-"""What an effect is to the rig: a name, a range of sizes, and the fields of `Machine` that a size changes."""
+"""An effect of the rig: a name, a range of sizes, and the fields of `Machine` that a size changes."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -12,26 +12,26 @@ Fields = dict[str, Any]
 
 
 def proportional(size: float, scale: float) -> float:
-    """A size grows with the effect."""
+    """The size grows with the effect."""
     return size * scale
 
 
 def inverse(size: float, scale: float) -> float:
-    """A size falls as the effect grows: a natural frequency, a time to the wall."""
+    """The size falls as the effect grows: a natural frequency, a time to the wall."""
     return size / scale
 
 
 def towards(absent: float) -> Callable[[float, float], float]:
-    """A size nears the value at which the effect is absent."""
+    """The size approaches a value at which the effect is absent."""
     return lambda size, scale: absent - (absent - size) * scale
 
 
 class Effect(NamedTuple):
     """One row of the table.
 
-    `fields(machine, size, rng)` gives the changed fields; what a size leaves open (where, which chamber) comes from
+    `fields(machine, size, rng)` gives the changed fields; other choices (place, chamber) come from
     rng. `low` to `high` are sizes of full strength. `same_shape` is False where the equation is another than a
-    catalogue would print, and only the name can be compared. `equations` are those whose residual shows it.
+    catalogue's, and only the name can be compared. `equations` are those whose residual shows it.
     """
 
     unit: str

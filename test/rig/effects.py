@@ -1,7 +1,7 @@
 """The table of effects a machine may hide, and machines drawn from it.
 
-Names are those of the catalogue of physical effects. After a colon stands another shape the literature gives the same
-effect. OUTSIDE holds what no catalogue has.
+Names are those of the catalogue of physical effects. After a colon: another shape from the literature for the same
+effect. OUTSIDE has the effects of no catalogue.
 """
 
 import difflib
@@ -22,7 +22,7 @@ EFFECTS: dict[str, Effect] = {**FRICTION, **LOADS, **VALVE, **GAS, **SENSORS, **
 
 
 class Wish(NamedTuple):
-    """An effect asked for: a name of EFFECTS, and a size or None for one drawn."""
+    """A requested effect: a name of EFFECTS, and a size, or None for a random one."""
 
     name: str
     size: float | None = None
@@ -37,7 +37,7 @@ def find(name: str) -> Effect:
 
 
 def parse(text: str) -> Wish:
-    """NAME or NAME=SIZE, as on a command line; KeyError for an unknown name, ValueError for a size that is none."""
+    """NAME or NAME=SIZE, as on a command line; KeyError for an unknown name, ValueError for a bad size."""
     name, equals, size = text.partition("=")
     effect = find(name)
     if not equals:
@@ -52,7 +52,7 @@ def parse(text: str) -> Wish:
 
 
 def build(seed: int, wishes: Sequence[Wish] = (), wear: float = 0.05, rough: bool = False, scale: float = 1.0) -> Case:
-    """A worn machine that hides the wished effects; sizes not given are drawn, at `scale` of full strength."""
+    """A worn machine that hides the requested effects; other sizes are drawn, at `scale` of full strength."""
     machine = worn(Machine(), np.random.default_rng([seed, 0]), wear)
     rng, hidden = np.random.default_rng([seed, 1]), []
     for name, size in wishes:

@@ -1,4 +1,4 @@
-"""What a rig is made to do while it is recorded: the runs of a case, by name."""
+"""The motions of a rig while it is recorded: the runs of a case, by name."""
 
 import zlib
 from collections.abc import Callable
@@ -118,7 +118,7 @@ RUNS = (
 
 
 def run_rng(seed: int, name: str) -> Rng:
-    """The random numbers of one run of one seed, whatever other runs are made."""
+    """The random numbers of one run of one seed, independent of other runs."""
     return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 

@@ -63,7 +63,7 @@ def texture(table: ndarray, y: float) -> float:
 
 @njit
 def yielded(m: Machine, v: float, deflection: float, share: float) -> float:
-    """alpha: how much of the motion is plastic, by the bristle's share of its highest force."""
+    """alpha: the plastic part of the motion, from the bristle's share of its highest force."""
     share = abs(share)
     if v * deflection < 0.0 or share <= m.elastic_share:
         return 0.0

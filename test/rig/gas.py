@@ -17,7 +17,7 @@ def volumes(m: Machine, y: float):
 
 @njit
 def through_hose(m: Machine, y: float, p: float, to: float, out: float, end: float, kinked: bool):
-    """What kink, tube loss and cushion leave of the flows to and from one chamber; `end` is where it is smallest."""
+    """Share of the flows to and from one chamber after kink, tube loss and cushion; `end` is where it is smallest."""
     if kinked and m.kink < 1.0:
         pinch = 0.5 * (1.0 + tanh(m.kink_side * (y - m.kink_position) / m.kink_width))
         left = 1.0 - (1.0 - m.kink) * pinch
@@ -27,7 +27,7 @@ def through_hose(m: Machine, y: float, p: float, to: float, out: float, end: flo
         to, out = to * left, out * left
     if m.cushion < 1.0:
         way = abs(end * m.half_stroke - y) / m.cushion_length
-        if way < 1.0:  # the cushion spear leaves a ring that opens with the square of the way
+        if way < 1.0:  # the cushion spear leaves a ring that opens with the square of the distance
             out *= m.cushion + (1.0 - m.cushion) * way * way
     return to, out
 

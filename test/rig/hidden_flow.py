@@ -5,7 +5,7 @@ from .machine import Machine
 
 _CHAMBERS = ("chamber_a", "chamber_b")
 _VALVE = ("valve", *_CHAMBERS)
-_TYPICAL_FLOW = 5.7e-4  # kg/s, what steady motion at full opening draws
+_TYPICAL_FLOW = 5.7e-4  # kg/s, flow of steady motion at full opening
 
 
 def _choked(machine: Machine, size: float, rng: Rng) -> Fields:
@@ -29,7 +29,7 @@ def _long_feed(machine: Machine, size: float, rng: Rng) -> Fields:
 
 
 def _tube(machine: Machine, size: float, rng: Rng) -> Fields:
-    """A tube as long as sound takes `size` s to pass, laminar, after Richer and Hurmuzlu."""
+    """A laminar tube with a sound travel time of `size` s, after Richer and Hurmuzlu."""
     viscosity, bore = 1.81e-5, rng.uniform(4e-3, 6e-3)
     loss = 0.5 * 32.0 * viscosity / bore**2 * machine.gas_constant * machine.temperature * size
     return {"line_delay": size, "line_loss": loss}

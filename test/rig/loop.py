@@ -38,7 +38,7 @@ def _remember(m: Machine, x: ndarray, t: float, u: float, past: ndarray, step: i
 
 @njit
 def _recall(m: Machine, past: ndarray, step: int, h: float, late: ndarray) -> None:
-    """Write the means over `step`, moved back by the delays, into `late`: what came before the first step is zero."""
+    """Write the means over `step`, moved back by the delays, into `late`; flows before the first step are zero."""
     room = past.shape[1]
     for i in range(3):
         delay = m.lag_delay if i == 2 else m.line_delay
@@ -82,7 +82,7 @@ def _guarded(u: float, y: float, limit: float, memory: ndarray) -> float:
     return u if memory[1] == 0.0 else memory[1] * abs(u)
 
 
-@njit(cache=True)  # what it calls is compiled into it; see `cache`
+@njit(cache=True)  # the called functions are compiled into it; see `cache`
 def integrate(
     m: Machine,
     rough: Roughness,
@@ -97,7 +97,7 @@ def integrate(
 ) -> None:
     """Run len(voltage) samples of 1 ms in `steps` steps each, from x, which it advances.
 
-    voltage (n,) [V] is applied, or, where wanted (n,) [m] is not NaN, what the positioner makes of it and of the
+    voltage (n,) [V] is applied, or, where wanted (n,) [m] is not NaN, the positioner's output for it and the
     position read with noise (n,) [m]. Writes the state at the START of each sample to out (n, states), the voltage to
     applied (n,).
     """

@@ -1,6 +1,6 @@
-"""One machine that is recorded: the base axis and every effect a machine may hide, each with a setting that is absent.
+"""One recorded machine: the base axis and every effect it may hide, each with a setting that means absent.
 
-SI units, absolute pressures; forces are positive against extension. Fields of an effect stand at the value that adds
+SI units, absolute pressures; forces are positive against extension. Fields of an effect have the value that adds
 nothing. The dynamics are in `valve`, `gas`, `friction`, `motion`; `effects` says which fields an effect changes.
 """
 
@@ -46,7 +46,7 @@ class Machine(NamedTuple):
     viscous_in: float = 0.0  # retracting
     viscous_power: float = 1.0  # of the speed, equal to linear at 0.3 m/s
     retract_excess: float = 0.0  # share by which friction is higher while retracting ...
-    retract_static: float = 1.0  # ... and of that, what the part beyond Coulomb friction has
+    retract_static: float = 1.0  # ... and of that, the share of the part beyond Coulomb friction
     spot_height: float = 0.0  # tight spot: share at its centre
     spot_centre: float = 0.0
     spot_width: float = 0.05  # standard deviation of the bell
@@ -60,7 +60,7 @@ class Machine(NamedTuple):
     warm_slow: float = 30.0
     warm_split: float = 1.0  # ... and the first one's share
     warm_work: float = 0.0  # share lost once friction has made 20 W for long, first order by warm_fast
-    rest_rise: float = 0.0  # what a long rest adds to static friction [N]
+    rest_rise: float = 0.0  # increase of static friction after a long rest [N]
     rest_time: float = 1.0
     rest_power: float = 1.0  # stretched exponential
     rest_log: float = 0.0  # 1: grows with the logarithm instead, by rest_rise in 10 s
@@ -74,8 +74,8 @@ class Machine(NamedTuple):
     spring: float = 0.0
     spring_centre: float = 0.0
     spring_hardening: float = 0.0  # share of its stiffness gained at 0.3 m
-    spring_power: float = 2.0  # of the way, with which it is gained
-    load_share: float = 0.0  # share of the mass that hangs behind a coupling
+    spring_power: float = 2.0  # of the distance in that gain
+    load_share: float = 0.0  # share of the mass behind a coupling
     coupling: float = 0.0  # its stiffness [N/m]
     coupling_damping: float = 0.0
     coupling_gap: float = 0.0  # its dead band, half width [m]
@@ -140,7 +140,7 @@ def packed(machine: Machine) -> np.record:
 
 
 class Roughness(NamedTuple):
-    """What no model has: a force over time and a friction texture over position."""
+    """Disturbances of no model: a force over time and a friction texture over position."""
 
     force: np.ndarray  # (n,) N, one value per FORCE_SPACING, linear between
     texture: np.ndarray  # (m,) N, from position -1.2 m, one value per TEXTURE_SPACING, linear between
@@ -167,7 +167,7 @@ def rough_surface(
     return Roughness(lfilter([1.0], [1.0, -decay], kicks), np.sin(np.outer(y, waves) + phases) @ heights)
 
 
-# What five per cent of wear touches; what a scale, a ruler or a regulator sets is exact.
+# Parameters that wear changes by 5 %; those set by a scale, a ruler or a regulator are exact.
 WORN = (
     "dead_right",
     "dead_left",

@@ -1,4 +1,4 @@
-"""Forces on the piston that are neither gas nor friction."""
+"""Forces on the piston other than gas and friction."""
 
 from math import pi, sin
 

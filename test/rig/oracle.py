@@ -26,7 +26,7 @@ def simulate(
     """Simulate the base machine; voltage[k] [V] is held during sample k of length sample_time [s].
 
     `parameters` override PARAMETERS. `state` gives y [m], v [m/s], p_a, p_b [Pa abs], z [m] at the start of sample 0;
-    what it leaves out is zero, the pressures atmospheric. Returns (n, 5): the COLUMNS at the END of each sample. The
+    missing ones are zero, pressures atmospheric. Returns (n, 5): the COLUMNS at the END of each sample. The
     solver restarts at every change of the voltage. `method` names a solver of scipy's solve_ivp; at rtol = 1e-10 LSODA,
     Radau and DOP853 agree within 1e-10 m and 1e-5 Pa. Raises KeyError for an unknown name, RuntimeError if the solver
     gives up.

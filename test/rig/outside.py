@@ -1,4 +1,4 @@
-"""Effects no catalogue has: a diagnosis must say that something is there which it does not know."""
+"""Effects of no catalogue: a diagnosis must report an unknown effect."""
 
 import numpy as np
 

@@ -11,7 +11,7 @@ from .machine import FORCE_SPACING, Machine, Roughness
 from .motion import coupled, external, stop
 from .valve import flows
 
-# The bristle is carried as its share of static friction, the chambers as mass [kg] and internal energy [J].
+# The bristle's state is its share of static friction, a chamber's are mass [kg] and internal energy [J].
 STATES = (
     "y",
     "v",
@@ -42,7 +42,7 @@ def gas_pressures(m: Machine, x: ndarray):
 
 @njit
 def spool_position(m: Machine, x: ndarray, command: float) -> float:
-    """Where the spool is [V]."""
+    """Position of the spool [V]."""
     return x[7] if m.spool_rate > 0.0 or m.spool_lag > 0.0 else command
 
 
@@ -55,7 +55,7 @@ def supply_pressure(m: Machine, x: ndarray, t: float) -> float:
 
 @njit
 def line_flows(m: Machine, x: ndarray, t: float, command: float):
-    """Net flows into the hoses of a and b, and what is drawn from the supply [kg/s]."""
+    """Net flows into the hoses of a and b, and the flow from the supply [kg/s]."""
     p_a, p_b = gas_pressures(m, x)
     to_a, from_a, to_b, from_b = flows(m, spool_position(m, x, command), supply_pressure(m, x, t), p_a, p_b)
     to_a, from_a = through_hose(m, x[0], p_a, to_a, from_a, -1.0, True)

@@ -1,4 +1,4 @@
-"""What the sensors and the logger make of the truth."""
+"""Sensor signals and log of the true motion."""
 
 from typing import NamedTuple
 
@@ -52,7 +52,7 @@ def _filtered(m: Machine, position: np.ndarray) -> np.ndarray:
 
 
 def _loose(m: Machine, position: np.ndarray) -> np.ndarray:
-    """What an encoder shows that is dragged along through a dead band."""
+    """Reading of an encoder that is dragged along through a dead band."""
     shown, follower = np.empty_like(position), position[0]
     for k, y in enumerate(position):
         follower = min(max(follower, y - m.encoder_play), y + m.encoder_play)
@@ -70,8 +70,8 @@ def record(
 ) -> Run:
     """The run as it is recorded, of states (n, states) at the sampling instants and voltage (n,) held after each.
 
-    `noise` (n,) [m] is the encoder's, which a position loop has seen already. The samples are taken on the millisecond;
-    it is their stamps that jitter.
+    `noise` (n,) [m] is the encoder's, already used by a position loop. The samples are taken on the millisecond;
+    only their stamps jitter.
     """
     n, truth = len(states), readings(m, states)
     position = _delayed(m, truth) if m.position_delay > 0.0 else truth[:, 0]

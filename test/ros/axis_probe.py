@@ -1,4 +1,4 @@
-"""A probe that plays the manipulator stack of one axis: sends what it sends, and says where the piston is."""
+"""A probe in the role of one axis' manipulator stack: sends its messages, and gives the piston's position."""
 
 import time
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # a slow test must not look at the past
+LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # a slow test must not read old messages
 
 
 class AxisProbe(Probe):
@@ -21,7 +21,7 @@ class AxisProbe(Probe):
         self.joint = joint
 
     def publisher(self, kind: Any, topic: str, qos: QoSProfile = RELIABLE) -> Any:
-        """A publisher that somebody listens to."""
+        """A publisher with a subscriber."""
         key = f"{topic} {qos.reliability.name}"
         if key not in self._publishers:
             self._publishers[key] = self.node.create_publisher(kind, topic, qos)
@@ -31,12 +31,12 @@ class AxisProbe(Probe):
 
     @property
     def position(self) -> float:
-        """Where the piston is [m]."""
+        """Position of the piston [m]."""
         return float(self.wait(lambda: self.heard["joint_states"], "a joint state")[-1].position[0])
 
     @property
     def speed(self) -> float:
-        """How fast it is [m/s]."""
+        """Velocity of the piston [m/s]."""
         return abs(float(self.heard["joint_states"][-1].velocity[0]))
 
     @property
@@ -45,11 +45,11 @@ class AxisProbe(Probe):
         return float(self.heard["valve/command"][-1].data)
 
     def arrives(self, position: float, within: float = 3e-3) -> None:
-        """Until the piston rests there."""
+        """Wait until the piston rests there."""
         self.wait(lambda: abs(self.position - position) < within and self.speed < 2e-3, f"rest at {position} m")
 
     def comes_to_rest(self) -> None:
-        """Until the piston has moved less than a millimetre in 0.4 s."""
+        """Wait until the piston has moved less than a millimetre in 0.4 s."""
 
         def rested() -> bool:
             begin = self.position
@@ -78,13 +78,13 @@ class AxisProbe(Probe):
         velocities: Sequence[float] = (),
         qos: QoSProfile = RELIABLE,
     ) -> None:
-        """What JointStateTopicSystem sends: all joints of its block, positions, and velocities if it has them."""
+        """A message of JointStateTopicSystem: all joints of its block, positions, and velocities if it has them."""
         message = JointState(name=list(names), position=list(positions), velocity=list(velocities))
         message.header.stamp = self.node.get_clock().now().to_msg()
         self.publisher(JointState, "joint_commands", qos).publish(message)
 
     def trajectory(self, points: Sequence[tuple[float, ...]], names: Sequence[str] = (), stamp: Any = None) -> None:
-        """A trajectory of points (time, position, velocity, acceleration), as many of these as there are.
+        """A trajectory of points (time, position, velocity, acceleration), or the first few of these.
 
         Each joint of `names` gets the same numbers.
         """

@@ -1,4 +1,4 @@
-"""Bags of constant-voltage runs, made by the conductor on a model and not by nodes: quick, and always the same."""
+"""Bags of constant-voltage runs, made by the conductor on a model without nodes: fast and repeatable."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""A running simulator, taken sample by sample through what was recorded elsewhere."""
+"""A running simulator, stepped sample by sample along a recording of another one."""
 
 import threading
 import time
@@ -14,7 +14,7 @@ LONG = 120.0  # s: the machine may be busy
 
 def follow(twin: Probe, recording: Recording) -> np.ndarray:
     """Distances [m] between the twin and the recording at every sample, while the twin gets the recording's commands
-    from the recording's start. The twin is stepped: its clock is the recording's, however busy the machine is.
+    from the recording's start. The twin is stepped: its clock is the recording's, even on a busy machine.
     """
     assert recording.pressure_a is not None
     assert recording.pressure_b is not None

@@ -1,7 +1,7 @@
-"""Reads launch files without ROS's launch, of which there are no wheels: those few parts of it that ours use.
+"""Reads launch files without ROS's launch, which has no wheels: only the parts that our files use.
 
 `commands` gives what `ros2 launch` would start, as commands of Python modules. Where launch refuses something, an
-assertion fails here, and what these classes do not know is an error.
+assertion fails here, and anything unknown to these classes is an error.
 """
 
 import importlib.util
@@ -45,7 +45,7 @@ class PathJoinSubstitution(_Substitution):
 
 
 class Command(_Substitution):
-    """Is not run: its text stands for what it would say."""
+    """Is not run: its text replaces its output."""
 
     def perform(self, arguments: Arguments) -> str:
         return _text(self.content, arguments)
@@ -161,7 +161,7 @@ def _command(node: Node, place: Path, arguments: Arguments) -> list[str]:
 
 
 def _value(value: Any, arguments: Arguments) -> Any:
-    """A parameter: a plain value; text of a stated type; other text is what YAML makes of it."""
+    """A parameter: a plain value; text of a stated type; other text is read as YAML."""
     if isinstance(value, _Substitution):
         return yaml.safe_load(value.perform(arguments))
     if not isinstance(value, ParameterValue):

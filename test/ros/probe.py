@@ -81,7 +81,7 @@ class Probe:
     # --- waiting ----------------------------------------------------------------------------------------------------
 
     def wait(self, condition: Callable[[], object], what: str, seconds: float = PATIENCE) -> Any:
-        """Until `condition` holds; its value."""
+        """Wait until `condition` holds; its value."""
         end = time.monotonic() + seconds
         while not (value := condition()):
             assert time.monotonic() < end, f"in {seconds} s never: {what}"
@@ -89,7 +89,7 @@ class Probe:
         return value
 
     def matched(self, *publishers: Any) -> None:
-        """Until somebody listens to each of `publishers`."""
+        """Wait until each of `publishers` has a subscriber."""
         for publisher in publishers:
             self.wait(publisher.get_subscription_count, f"a subscriber of {publisher.topic_name}")
 
@@ -122,7 +122,7 @@ class Probe:
 
     @property
     def command(self) -> Any:
-        """Publisher of valve commands; there is none until it is asked for."""
+        """Publisher of valve commands; created at first use."""
         return self._publisher("valve/command")
 
     @property
@@ -169,7 +169,7 @@ class Probe:
         return self.call(SetBool, "simulator/pause", SetBool.Request(data=on))
 
     def set(self, node: str, **values: object) -> tuple[bool, str]:
-        """Set parameters, all at once (`__` in a name stands for a dot); whether it was done, and why not."""
+        """Set parameters, all at once (`__` in a name means a dot); whether it succeeded, and the reason if not."""
         given = [Parameter(name.replace("__", "."), value=value).to_parameter_msg() for name, value in values.items()]
         request = SetParametersAtomically.Request(parameters=given)
         result = self.call(SetParametersAtomically, f"{node}/set_parameters_atomically", request).result

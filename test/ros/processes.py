@@ -18,7 +18,7 @@ PATIENCE = 90.0  # s
 
 
 class Running:
-    """A process and all it has said so far, line by line with the time of arrival."""
+    """A process and its output so far, line by line with the time of arrival."""
 
     def __init__(self, *command: str, cwd: Path, **variables: str) -> None:
         """`variables` go into its environment."""
@@ -43,11 +43,11 @@ class Running:
 
     @property
     def said(self) -> str:
-        """Everything so far."""
+        """The output so far."""
         return "\n".join(line for _, line in self.lines)
 
     def wait_for(self, words: str) -> None:
-        """Until the process says `words`."""
+        """Wait until the process prints `words`."""
         deadline = time.monotonic() + PATIENCE
         while words not in self.said:
             assert time.monotonic() < deadline, f"never said {words!r}: {self.said}"
@@ -65,7 +65,7 @@ class Running:
 
 @contextmanager
 def running(*command: str, cwd: Path, **variables: str) -> Iterator[Running]:
-    """A Python process with `command`, which does not outlive the block."""
+    """A Python process with `command`, which ends with the block at the latest."""
     process = Running(*command, cwd=cwd, **variables)
     try:
         yield process

@@ -1,4 +1,4 @@
-"""A plant in the test's own process that does what it is told, and fails when it is told to."""
+"""A plant in the test's own process that moves as set, and fails on request."""
 
 import math
 import threading
@@ -13,7 +13,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 RATE = 200.0  # Hz
-DEPTH = 1000  # messages that wait, should the machine be busy
+DEPTH = 1000  # queued messages on a busy machine
 TOP = 0.4  # m/s, at any voltage beyond 0.1 V
 
 
@@ -91,7 +91,7 @@ def scripted_plant(namespace: str) -> Iterator[ScriptedPlant]:
 
 
 def until(condition: object, what: str, seconds: float = 30.0) -> None:
-    """Until `condition`, a function, holds."""
+    """Wait until `condition`, a function, holds."""
     end = time.monotonic() + seconds
     while not condition():  # type: ignore[operator]  # callers give functions
         assert time.monotonic() < end, f"in {seconds} s never: {what}"

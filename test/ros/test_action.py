@@ -1,4 +1,4 @@
-"""FollowJointTrajectory: everything but its transport, for control_msgs has no wheels. Loop and messages are real."""
+"""FollowJointTrajectory without its transport, because control_msgs has no wheels. Loop and messages are real."""
 
 import asyncio
 import math
@@ -36,7 +36,7 @@ class Action:
 
 
 class Goal:
-    """A goal and what became of it."""
+    """A goal and its result."""
 
     is_cancel_requested = False
 
@@ -59,7 +59,7 @@ class Goal:
 
 
 class Player:
-    """Plays the node: a loop whose piston follows its setpoint, unless it is stuck. `meanwhile` happens after 0.5 s."""
+    """Acts as the node: a loop whose piston follows its setpoint, unless stuck. `meanwhile` runs after 0.5 s."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, stuck: bool = False, meanwhile: Any = None) -> None:
         self.run, self.stuck, self.meanwhile, self.pauses = Run(), stuck, meanwhile, 0

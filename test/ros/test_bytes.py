@@ -1,4 +1,4 @@
-"""Messages as bytes: what is filled in and read out is what rclpy serialises and deserialises."""
+"""Messages as bytes: writing and reading agree with rclpy's serialisation and deserialisation."""
 
 import math
 
@@ -72,7 +72,7 @@ def test_a_joint_is_read_by_name(frame: str, names: list[str], velocity: bool) -
         assert sample == (STAMP, position[index], speeds[index] if velocity else None)
 
 
-def test_a_changed_layout_is_learnt_anew() -> None:
+def test_a_changed_layout_is_learnt_again() -> None:
     reader = readers.JointReader("piston")
     layouts = [
         (["piston", "boom1"], [1.0, 2.0], [3.0, 4.0]),
@@ -88,7 +88,7 @@ def test_a_changed_layout_is_learnt_anew() -> None:
         assert sample.velocity == (velocity[index] if index < len(velocity) else None)
 
 
-def test_a_joint_that_is_not_there_is_none() -> None:
+def test_a_missing_joint_gives_none() -> None:
     reader = readers.JointReader("piston")
     assert reader.read(joint_state(["boom"], [1.0], [])) is None
     assert reader.read(joint_state(["boom", "piston"], [1.0], [])) is None  # no position of its own
@@ -108,7 +108,7 @@ NO_MESSAGES = [b"", HEAD, HEAD + b"\xff" * 60, b"\0\0\0\0" + b"\xff" * 60, b"\7\
 
 @pytest.mark.parametrize("data", NO_MESSAGES)
 def test_bytes_that_are_no_message_are_no_number_and_no_joint(data: bytes) -> None:
-    """Anybody may publish them: a node that dies of them leaves its valve open."""
+    """Anybody may publish them: a node that crashes on them leaves its valve open."""
     assert not math.isfinite(readers.number(data)) or len(data) >= 12
     assert math.isnan(readers.pressure(data))
     reader = readers.JointReader("piston")

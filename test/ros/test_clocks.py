@@ -19,7 +19,7 @@ def test_clocks_that_jump_back_and_forth(tmp_path: Path) -> None:
         joint = one.publisher(JointState, "joint_states")
 
         def play(begin: float, seconds: float) -> list[float]:
-            """Stamps and clock from `begin` [s]; the piston stands. The commands by then."""
+            """Stamps and clock from `begin` [s]; the piston is at rest. Returns the commands so far."""
             have = len(one.heard["valve/command"])
             for tick in range(round(200 * seconds)):
                 message, now = JointState(name=["piston"], position=[0.0]), Clock()

@@ -1,4 +1,4 @@
-"""Simulators and controllers as processes: each piston goes where it should."""
+"""Simulators and controllers as processes: each piston reaches its goal."""
 
 import signal
 from contextlib import ExitStack

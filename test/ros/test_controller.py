@@ -40,7 +40,7 @@ class Plant:
         self.publisher.publish(message)
 
     def answer(self, position: float, velocity: float | None = None) -> float:
-        """The command that a joint state causes."""
+        """The command for a joint state."""
         have = len(self.commands)
         self.send(position, velocity)
         self.probe.wait(lambda: len(self.commands) > have, "a command")
@@ -69,7 +69,7 @@ def controlled(folder: Path, namespace: str, **parameters: object) -> Iterator[t
 
 
 def test_every_measurement_gets_the_command_of_the_law(tmp_path: Path) -> None:
-    """To the bit: the node adds nothing, and joint and velocity are found by name."""
+    """To the bit: the node changes nothing, and joint and velocity are found by name."""
     steady = {"reference.shape": "constant", "reference.position": 0.05}
     with controlled(tmp_path, "law", **steady) as (process, plant):
         positions = [0.0, -2e-3, -2.1e-3, -2.2e-3, -2e-3, -1.8e-3, -1.6e-3]  # off enough for an answer
@@ -107,7 +107,7 @@ def test_silence_is_answered_with_0_v_and_said(tmp_path: Path) -> None:
         assert process.end() == 0
 
 
-def test_what_is_no_number_is_refused_and_counted(tmp_path: Path) -> None:
+def test_what_is_not_a_number_is_refused_and_counted(tmp_path: Path) -> None:
     with controlled(tmp_path, "numbers") as (process, plant):
         plant.want(0.3)
         plant.push()
@@ -116,7 +116,7 @@ def test_what_is_no_number_is_refused_and_counted(tmp_path: Path) -> None:
         plant.send(math.inf)
         plant.want(math.nan)
         time.sleep(0.2)
-        assert len(plant.commands) == have  # no answer to a position that is none
+        assert len(plant.commands) == have  # no answer to a position that is not a number
         plant.push()  # and the reference is the old one
         _, values = plant.probe.health("numbers/controller")
         assert values["rejected_inputs"] == "3"
@@ -134,7 +134,7 @@ def test_gains_change_under_way_or_not_at_all(tmp_path: Path) -> None:
         assert not plant.probe.set("controller", max_voltage=0.5)[0]  # inside the dead zone
         assert not plant.probe.set("controller", reference__shape="circle")[0]
         assert plant.probe.get("controller", "pid.proportional") == 100.0
-        assert plant.probe.set("controller", reference__levels=[0, 1]) == (True, "")  # whole numbers serve, too
+        assert plant.probe.set("controller", reference__levels=[0, 1]) == (True, "")  # whole numbers are accepted, too
         assert plant.probe.set("controller", pid__proportional=20) == (True, "")
         assert 0.78 < plant.answer(0.0) < usual - 2.0
         assert plant.probe.set("controller", reference__shape="constant", reference__position=-0.05) == (True, "")
@@ -142,7 +142,7 @@ def test_gains_change_under_way_or_not_at_all(tmp_path: Path) -> None:
         assert process.end() == 0
 
 
-def test_a_clock_that_was_set_back_starts_it_anew(tmp_path: Path) -> None:
+def test_a_clock_that_was_set_back_restarts_it(tmp_path: Path) -> None:
     with controlled(tmp_path, "loops") as (process, plant):
         plant.want(0.05)
         plant.time = 100_000_000_000

@@ -39,7 +39,7 @@ def experiment(folder: Path, namespace: str, **parameters: object) -> list[str]:
 
 
 def summary(folder: Path) -> dict:
-    """What the node wrote beside the recordings."""
+    """The JSON file that the node wrote beside the recordings."""
     return json.loads((folder / "out" / "experiment.json").read_text(encoding="utf-8"))
 
 
@@ -48,7 +48,7 @@ def summary(folder: Path) -> dict:
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict, str]:
-    """Two voltages both ways on a simulator in lockstep: folder, JSON result, and all that was said."""
+    """Two voltages both ways on a simulator in lockstep: folder, JSON result, and the output."""
     folder = tmp_path_factory.mktemp("campaign")
     plant = node(
         "simulator", "-r", "__ns:=/campaign", real_time_factor=0.0, publish_rate=500.0, publish_velocity=False,
@@ -112,7 +112,7 @@ def test_the_piston_stays_inside_the_limits(campaign: tuple[Path, dict, str]) ->
 
 
 def test_commands_are_recorded_as_they_acted(campaign: tuple[Path, dict, str]) -> None:
-    """In lockstep everything repeats: the model, driven by what was recorded, goes where the simulator went."""
+    """In lockstep everything repeats: the model, driven by the recorded voltage, moves as the simulator did."""
     recording = recordings(campaign[0])[2]
     run = make_run(recording)
     assert recording.pressure_a is not None
@@ -126,7 +126,7 @@ def test_commands_are_recorded_as_they_acted(campaign: tuple[Path, dict, str]) -
     assert np.abs(predicted - recording.position[1:]).max() < 2e-3
 
 
-# --- what ends an experiment ----------------------------------------------------------------------------------------
+# --- the end of an experiment ---------------------------------------------------------------------------------------
 
 
 def in_trial(plant: ScriptedPlant, process: Running, name: str = "right") -> None:
@@ -137,7 +137,7 @@ def in_trial(plant: ScriptedPlant, process: Running, name: str = "right") -> Non
 
 
 def ended(plant: ScriptedPlant, process: Running, code: int, said: str) -> None:
-    """The process ends with `code` and `said`, and the valve is closed."""
+    """The process ends with `code` and the text `said`, and the valve is closed."""
     assert process.end(None) == code, process.said
     assert said in process.said
     until(lambda: plant.commands[-1] == 0.0, "a closed valve")
@@ -216,7 +216,7 @@ def test_a_killed_command_takes_its_node_along(tmp_path: Path) -> None:
     assert "has ended" in summary(tmp_path)["reason"]
 
 
-# --- what keeps it from beginning -----------------------------------------------------------------------------------
+# --- refusals to start ----------------------------------------------------------------------------------------------
 
 
 def test_without_a_plant_it_says_what_is_missing_and_where_there_is_one(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The identification as a process: recordings in, results and machine files out, and what it says meanwhile."""
+"""The identification as a process: recordings in; results, machine files and diagnostics out."""
 
 import json
 import shutil
@@ -30,7 +30,7 @@ LONG = 120.0  # s: the machine may be busy
 
 @pytest.fixture(scope="module")
 def bags(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Four runs of a machine whose friction is not the default's; every second one is enough to find it."""
+    """Four runs of a machine with other friction than the default; every second one is enough to identify it."""
     truth = AXIS.with_parameters(TRUTH)
     return record_campaign(tmp_path_factory.mktemp("bags"), truth, (0.83, 3.0), 3.0)
 
@@ -49,12 +49,12 @@ class Listener:
         self.messages = one.hear("identification/result", String, LATCHED)
 
     def result(self, count: int = 1) -> dict[str, Any]:
-        """The result number `count` to come, once it is there."""
+        """The result number `count`, once it has arrived."""
         self.probe.wait(lambda: len(self.messages) >= count, f"result {count}", LONG)
         return dict(json.loads(self.messages[count - 1].data))
 
     def applied(self) -> dict[str, Any]:
-        """What became of the parameters on the target."""
+        """The outcome of the parameters on the target."""
         self.probe.wait(lambda: self.messages and json.loads(self.messages[-1].data)["applied"], "applied", LONG)
         return dict(json.loads(self.messages[-1].data)["applied"])
 
@@ -81,14 +81,14 @@ def listener(namespace: str) -> Iterator[Listener]:
 
 @contextmanager
 def simulating(hears: Listener, command: list[str], place: Path) -> Iterator[Running]:
-    """A simulator that has begun to run: nobody waits long for a target, but its kernel may have to be compiled."""
+    """A simulator that already runs: the wait for a target is short, but its kernel may have to be compiled."""
     with running(*command, cwd=place) as simulator:
         hears.probe.wait(lambda: hears.probe.heard["joint_states"], "a simulator that runs", LONG)
         yield simulator
 
 
 def put(bags: list[Path], folder: Path) -> None:
-    """Copy bags into folder/runs, each appearing at once."""
+    """Copy bags into folder/runs; each appears in one step."""
     (folder / "runs").mkdir(exist_ok=True)
     for bag in bags:
         shutil.copytree(bag, folder / "runs" / f".{bag.name}")
@@ -96,7 +96,7 @@ def put(bags: list[Path], folder: Path) -> None:
 
 
 def children(pid: int) -> list[int]:
-    """Processes that process `pid` has started and that still run."""
+    """Running child processes of process `pid`."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -109,13 +109,13 @@ def children(pid: int) -> list[int]:
 
 
 def at_work(process: Running) -> int:
-    """The process that does the work, once it is there and has begun."""
+    """The worker process, once it has started its work."""
     process.wait_for("10 %")
     (worker,) = children(process.process.pid)
     return worker
 
 
-def test_bags_are_picked_up_identified_written_and_told(tmp_path: Path, bags: list[Path]) -> None:
+def test_bags_are_picked_up_identified_written_and_reported(tmp_path: Path, bags: list[Path]) -> None:
     put(bags[:3], tmp_path)
     with listener("whole") as hears, running(*identification(tmp_path, "whole"), cwd=tmp_path) as process:
         first = hears.result()
@@ -196,7 +196,7 @@ def test_a_bag_being_written_waits(tmp_path: Path, bags: list[Path]) -> None:
         assert process.end(signal.SIGINT) == 0
 
 
-def test_refusals_are_told_and_the_rest_is_used(tmp_path: Path, bags: list[Path]) -> None:
+def test_refusals_are_reported_and_the_rest_is_used(tmp_path: Path, bags: list[Path]) -> None:
     put(bags[:2], tmp_path)
     with (tmp_path / "runs" / "garbage.db3").open("wb") as garbage:
         garbage.write(b"no database")
@@ -245,7 +245,7 @@ def test_what_is_identified_is_set_on_a_simulator_all_at_once(tmp_path: Path, ba
         assert simulator.end(signal.SIGINT) == 0
 
 
-def test_a_target_that_refuses_keeps_everything_and_the_reason_is_told(tmp_path: Path, bags: list[Path]) -> None:
+def test_a_target_that_refuses_keeps_everything_and_the_reason_is_reported(tmp_path: Path, bags: list[Path]) -> None:
     put(bags[::2], tmp_path)
     effects = [name for name in AXIS.effects if name != "quadratic_drag"]
     plant = node("simulator", "-r", "__ns:=/refuse", effects=effects)

@@ -10,7 +10,7 @@ IDENTIFY = {"rig/simulator", "twin/simulator", "rig/experiment", "identified/ide
 
 
 def parameters(command: list[str]) -> dict[str, object]:
-    """Those that launch itself writes."""
+    """The ROS arguments that launch itself writes."""
     path = Path(command[-1])
     assert path.name.startswith("launch_")
     return yaml.safe_load(path.read_text(encoding="utf-8"))["/**"]["ros__parameters"]
@@ -30,7 +30,7 @@ def test_the_axis_is_a_simulator_and_a_controller_of_the_same_machine(tmp_path: 
 def test_the_axis_is_recorded_if_a_folder_is_named(tmp_path: Path) -> None:
     nodes = commands("axis.launch.py", tmp_path, record="2030_01_02", namespace="cylinder_1")
     assert set(nodes) == {"cylinder_1/simulator", "cylinder_1/controller", "cylinder_1/recorder"}
-    assert parameters(nodes["cylinder_1/recorder"]) == {"output": "2030_01_02"}  # which YAML takes for a number
+    assert parameters(nodes["cylinder_1/recorder"]) == {"output": "2030_01_02"}  # which YAML reads as a number
 
 
 def test_the_recorder_alone_needs_a_folder(tmp_path: Path) -> None:

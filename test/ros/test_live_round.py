@@ -36,7 +36,7 @@ LONG = 120.0  # s: the machine may be busy
 
 
 class Round(NamedTuple):
-    """What came of it: distances [m] of the twin from the rig's recording with the friction found and with that of the
+    """The results: distances [m] of the twin from the rig's recording with the friction found and with that of the
     guess again, results published and exit codes.
     """
 
@@ -70,7 +70,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Round:
 
 
 def write_programme(folder: Path) -> None:
-    """A short experiment, made for the guess as a user would."""
+    """A short experiment, planned for the guess as by a user."""
     line = "-m pneumo_ros experiment constant-voltage --voltages 0.83 1 3 --seconds 2.5 --model guess.yaml --write"
     with running(*line.split(), "programme.yaml", cwd=folder) as command:
         assert command.end(None) == 0, command.said
@@ -96,7 +96,7 @@ def ended(process: Running) -> int:
 
 
 def complete(result: dict) -> bool:
-    """Whether a result is that of all trials, and was set on the twin or refused."""
+    """Whether a result covers all trials, and was set on the twin or refused."""
     return len(result["recordings"]) == len(TRIALS) and result["applied"] is not None
 
 

@@ -1,4 +1,4 @@
-"""Lockstep with the controller: faster than time, the same to the last bit, and free without a controller."""
+"""Lockstep with the controller: faster than real time, repeatable to the bit, and open loop without a controller."""
 
 import signal
 from pathlib import Path
@@ -20,7 +20,7 @@ Samples = dict[int, tuple[float, float, float]]
 
 
 def heard(one: Probe) -> Samples:
-    """Joint states of the first SPAN seconds, by stamp, of a simulator that waits to be started."""
+    """Joint states of the first SPAN seconds, by stamp, of a simulator that waits for its start."""
     messages = one.heard["joint_states"]
     one.wait(lambda: one.node.count_publishers("joint_states"), "a simulator")
     assert one.pause(False).success
@@ -53,7 +53,7 @@ def apart(tmp_path: Path, namespace: str) -> Samples:
 
 
 def assert_same_run(one: Samples, other: Samples) -> None:
-    """Wherever both were heard they are equal, and that is nearly everywhere."""
+    """Samples that arrived in both runs are equal, and nearly all arrived."""
     common = sorted(one.keys() & other.keys())
     assert len(common) > 0.5 * SPAN * LOCKSTEP["publish_rate"]  # a fast publisher outruns its listener at times
     assert [one[s] for s in common] == [other[s] for s in common]

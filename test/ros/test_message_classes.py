@@ -1,4 +1,4 @@
-"""Definitions that Python's message classes tell are those that rosbags knows for the same types."""
+"""Definitions from Python's message classes equal those of rosbags for the same types."""
 
 from importlib import import_module
 
@@ -41,7 +41,7 @@ def test_definitions_agree(kind: str) -> None:
 
 
 def test_types_of_ones_own_are_described_by_their_class(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An installed type that rosbags has never heard of, or whose fields are others there."""
+    """An installed type that is unknown to rosbags, or has other fields there."""
     package = import_module("sensor_msgs.msg")
     fields = {
         "header": "std_msgs/Header", "few": "sequence<double, 3>", "grid": "float[4]", "name": "string<10>",

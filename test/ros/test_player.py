@@ -1,4 +1,4 @@
-"""The player as a process, heard by a recorder: what was recorded comes again."""
+"""The player as a process, recorded again: the messages are the same."""
 
 import signal
 import time
@@ -28,7 +28,7 @@ def recording(tmp_path: Path) -> Path:
 
 
 def payloads(path: Path) -> dict[str, list[bytes]]:
-    """Bytes of every message, per topic: filled up to whole words, as on their way through the middleware."""
+    """Bytes of every message, per topic: padded to whole words, as by the middleware."""
     found: dict[str, list[bytes]] = {}
     for message in Bag(path).messages():
         filled = message.payload + bytes(-len(message.payload) % 4)
@@ -37,7 +37,7 @@ def payloads(path: Path) -> dict[str, list[bytes]]:
 
 
 def copied(folder: Path, topic: str, count: int) -> None:
-    """Until folder/copy holds so many messages."""
+    """Wait until folder/copy contains `count` messages."""
     deadline = time.monotonic() + PATIENCE
     while recorded(folder / "copy", topic) < count:
         assert time.monotonic() < deadline, f"never {count} messages on {topic}"
@@ -101,7 +101,7 @@ def test_late_subscribers_get_the_description(tmp_path: Path, recording: Path) -
     assert payloads(tmp_path / "copy") == {"/axis/description": payloads(recording)["/axis/description"]}
 
 
-def test_a_loop_goes_on_until_it_is_told_to_end(tmp_path: Path, recording: Path) -> None:
+def test_a_loop_goes_on_until_it_is_asked_to_end(tmp_path: Path, recording: Path) -> None:
     player = node("player", input=recording, loop=True, rate=5, topics=["/axis/joint_states"], wait=10)
     once = payloads(recording)["/axis/joint_states"]
     playing = replay(tmp_path, player, ["/axis/joint_states"], end=signal.SIGINT, count=2 * len(once) + 1)

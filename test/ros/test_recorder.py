@@ -1,4 +1,4 @@
-"""The recorder as a process beside a real publisher: what it writes, what it says, how it ends."""
+"""The recorder as a process with a real publisher: its files, its messages, its end."""
 
 import re
 import signal
@@ -26,14 +26,14 @@ def numbers(path: Path, topic: str) -> list[float]:
 
 
 def warnings(path: Path) -> str:
-    """What reading the whole recording finds wrong with it."""
+    """The warnings of reading the whole recording."""
     bag = Bag(path)
     bag.overview()
     return " ".join(bag.warnings)
 
 
 def closing(process: Running) -> str:
-    """What the recorder says at its end."""
+    """The recorder's output at its end."""
     return next(line for _, line in process.lines if "recorded" in line)
 
 
@@ -50,7 +50,7 @@ def test_four_topics_at_1_khz_are_recorded_whole(tmp_path: Path) -> None:
 
 
 def test_a_simulator_without_velocity_is_recorded_for_every_reader(tmp_path: Path) -> None:
-    """rosbags refuses messages with stray bytes behind an empty sequence."""
+    """rosbags refuses messages with extra bytes after an empty sequence."""
     simulator = node("simulator", publish_velocity=False)
     with running(*recorder(tmp_path), cwd=tmp_path) as recording, running(*simulator, cwd=tmp_path) as source:
         deadline = time.monotonic() + PATIENCE
@@ -65,14 +65,14 @@ def test_a_simulator_without_velocity_is_recorded_for_every_reader(tmp_path: Pat
 
 
 def test_a_recorder_that_cannot_keep_up_counts_what_it_lost(tmp_path: Path) -> None:
-    """Stopped, as by a debugger, while 4 x 1500 messages come: no queue of the system holds so many."""
+    """Stopped, as by a debugger, during 4 x 1500 messages: more than the system's queues can store."""
     with running(*recorder(tmp_path), cwd=tmp_path) as recording, running(*publisher(3000), cwd=tmp_path) as source:
         source.wait_for("1000")
         recording.process.send_signal(signal.SIGSTOP)
         source.wait_for("2500")
         recording.process.send_signal(signal.SIGCONT)
         source.wait_for("3000 published")
-        time.sleep(1.5)  # until /diagnostics has told it
+        time.sleep(1.5)  # until /diagnostics has reported it
         assert recording.end(signal.SIGTERM) == 0
     for topic in TOPICS:
         lost = re.search(rf"(\d+) on {topic}", closing(recording))

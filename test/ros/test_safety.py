@@ -1,4 +1,4 @@
-"""What goes wrong while the piston moves: simulator and controller as processes, started once for all of it."""
+"""Faults while the piston moves: simulator and controller as processes, started once for all tests."""
 
 import math
 import signal
@@ -63,7 +63,7 @@ def test_a_lost_supply_closes_the_valve_and_its_return_moves_nothing(rig: Rig) -
     one.rests(0.5)
     one.supply(math.nan)
     one.supply(7e5)
-    assert rig.moving()  # and goes where it is sent
+    assert rig.moving()  # and reaches its goal
 
 
 def test_vent_empties_both_chambers_of_a_supply_that_is_shut_off(rig: Rig) -> None:
@@ -103,7 +103,7 @@ def test_a_simulator_that_is_killed_and_started_again(rig: Rig) -> None:
     rig.simulator = rig.start("simulator", publish_rate=RATE, **{"initial.y": 0.1})
     rig.controller.wait_for("measurements are back")
     one.wait(lambda: abs(one.heard["valve/command"][-1].data) > 0.5, "motion to where it was sent")
-    assert abs(one.position - 0.1) < 0.1  # it set out from there, with the speed of a profile
+    assert abs(one.position - 0.1) < 0.1  # it started from there, with the speed of a profile
     assert rig.moving()
 
 
@@ -118,7 +118,7 @@ def test_a_controller_that_is_killed_and_started_again(rig: Rig) -> None:
     rig.controller.process.poll()
     have = len(one.heard["valve/command"])
     one.wait(lambda: len(one.heard["valve/command"]) > have, "commands of the new one")
-    one.rests(0.3)  # nobody has asked it for anything
+    one.rests(0.3)  # it has no reference
     assert "no reference yet" in one.health(f"{PLACE}/controller")[0]
 
 
@@ -133,7 +133,7 @@ WORST = [
 
 
 def test_parameters_at_their_worst_under_way(rig: Rig) -> None:
-    """The piston stays off the ends of the stroke, commands are numbers within the limit, and it all can be undone."""
+    """The piston stays off the ends of the stroke, commands are within the limit, and the settings can be undone."""
     one = rig.probe
     for worst in WORST:
         rig.moving()
@@ -154,7 +154,7 @@ def test_parameters_at_their_worst_under_way(rig: Rig) -> None:
     one.arrives(0.0)
 
 
-def test_numbers_that_are_none_change_nothing(rig: Rig) -> None:
+def test_values_that_are_not_numbers_change_nothing(rig: Rig) -> None:
     one = rig.probe
     one.comes_to_rest()
     before = int(one.health(f"{PLACE}/controller")[1]["rejected_inputs"])

@@ -1,4 +1,4 @@
-"""The simulator as a process: what it sends, takes, refuses and changes while it runs."""
+"""The simulator as a process: its output, its input, refusals and changes while it runs."""
 
 import json
 import math
@@ -19,7 +19,7 @@ AXIS = load_model("axis")
 
 @pytest.fixture(scope="module")
 def simulator(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    """One simulator for the tests that leave it as it was."""
+    """One simulator for the tests that do not change it."""
     with running(*node("simulator", publish_rate=500.0), cwd=tmp_path_factory.mktemp("simulator")) as process:
         yield process
         assert process.end(signal.SIGINT) == 0, process.said
@@ -59,7 +59,7 @@ def test_a_joint_state_is_complete_and_the_pressures_share_its_stamp(axis: Probe
     assert len(message.position) == len(message.velocity) == 1
 
 
-def test_stamps_are_as_even_as_the_rate_and_tell_the_time(axis: Probe) -> None:
+def test_stamps_are_as_even_as_the_rate_and_follow_the_clock(axis: Probe) -> None:
     messages = axis.more("joint_states", 200)
     steps = np.diff([stamp(message) for message in messages])
     assert np.mean(np.abs(steps - 2_000_000) < 1000) > 0.9  # but where a busy machine lost messages or time
@@ -67,7 +67,7 @@ def test_stamps_are_as_even_as_the_rate_and_tell_the_time(axis: Probe) -> None:
 
 
 def test_it_moves_as_the_model_says(axis: Probe) -> None:
-    """As fast at each position, whenever that was reached: a busy machine may have lost time."""
+    """The same speed at each position, not at each time: a busy machine may have lost time."""
     y, v = AXIS.simulate(np.full(1500, 2.0), AXIS.state(), sample_time=0.002)[:, :2].T
     heard = axis.heard["joint_states"]
     axis.wait(lambda: abs(heard[-1].position[0]) < 1e-6, "the start")
@@ -98,7 +98,7 @@ def test_the_valve_closes_when_commands_stop(axis: Probe) -> None:
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_a_command_that_is_no_number_is_refused_and_counted(axis: Probe, bad: float) -> None:
+def test_a_command_that_is_not_a_number_is_refused_and_counted(axis: Probe, bad: float) -> None:
     before = int(axis.health("simulator")[1]["rejected_inputs"])
     axis.send(bad, 0.2)
     message, values = axis.health("simulator")

@@ -1,4 +1,4 @@
-"""What a manipulator stack sends and expects: two axes in two namespaces, real processes, messages of ros2_control."""
+"""The messages of a manipulator stack: two axes in two namespaces, real processes, messages of ros2_control."""
 
 import math
 import time
@@ -14,17 +14,17 @@ from std_msgs.msg import Float64
 
 LEFT = "stack_left"
 RATE = 200.0  # Hz
-SLIP = 0.01  # m; a piston that has stuck off its goal may still slip by 3 to 4 mm
+SLIP = 0.01  # m; a piston that sticks away from its goal may still slip by 3 to 4 mm
 
 
 class Stack:
-    """The axis "stack_left" and its neighbour, and what the first one's process says."""
+    """The axis "stack_left" and its neighbour, and the output of the first one's process."""
 
     def __init__(self, left: AxisProbe, right: AxisProbe, process: Running) -> None:
         self.left, self.right, self.process = left, right, process
 
     def refused(self) -> int:
-        """How many inputs the left controller has refused by now."""
+        """Number of inputs that the left controller has refused."""
         return int(self.left.health(f"{LEFT}/controller")[1]["rejected_inputs"])
 
 
@@ -69,8 +69,8 @@ def test_publishers_of_either_reliability_are_heard(stack: Stack, left: AxisProb
     left.arrives(wanted)
 
 
-def test_short_arrays_and_numbers_that_are_none_are_refused(stack: Stack, left: AxisProbe) -> None:
-    left.comes_to_rest()  # on its way to what the test before has asked for
+def test_short_arrays_and_values_that_are_not_numbers_are_refused(stack: Stack, left: AxisProbe) -> None:
+    left.comes_to_rest()  # on its way to the goal of the test before
     before, begin = stack.refused(), left.position
     left.command_joints(["boom", "piston", "gripper"], [0.2, 0.3])  # whose positions are these?
     stack.process.wait_for("fewer positions than names")
@@ -82,7 +82,7 @@ def test_short_arrays_and_numbers_that_are_none_are_refused(stack: Stack, left: 
 
 
 def followed(axis: AxisProbe) -> float:
-    """How far the axis is off at the worst while a sine of 60 mm is streamed to it for 4 s [m]."""
+    """Largest error of the axis while a sine of 60 mm is streamed to it for 4 s [m]."""
     start, begin = axis.position, time.monotonic()
     worst, rate = 0.0, 2.0 * math.pi * 0.25
     while (passed := time.monotonic() - begin) < 4.0:
@@ -95,7 +95,7 @@ def followed(axis: AxisProbe) -> float:
 
 
 def test_a_stream_with_velocities_is_followed_as_it_moves(left: AxisProbe) -> None:
-    # A machine that halts for half a second halts the stream, too: 14 mm are 27 mm then. It does not do so each time.
+    # A computer that halts for half a second also halts the stream: 27 mm instead of 14 mm. This happens sometimes.
     assert any(followed(left) < 0.02 for _ in range(3))
 
 

@@ -11,7 +11,7 @@ from pneumo_ros.runs.cuts import parse_cuts, without
 from pneumo_ros.shooting.windows import predict
 
 
-def test_what_is_cut_is_neither_measured_nor_predicted() -> None:
+def test_cut_seconds_are_neither_measured_nor_predicted() -> None:
     model, _, run = own("sweep", seconds=5.0)
     left = without(run, [(0.0, 1.0), (3.0, 5.0)])
     assert run.measured.all()

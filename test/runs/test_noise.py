@@ -22,7 +22,7 @@ def test_white_noise_on_smooth_motion(sigma: float) -> None:
 
 @pytest.mark.parametrize("kind", ["steps", "sweep", "slow"])
 def test_white_noise_on_what_the_axis_does(kind: str) -> None:
-    """Breakaways, reversals and stick, whose events differences do not remove."""
+    """Breakaways, reversals and sticking, whose events differences do not remove."""
     noise = own(kind)[2].noise
     assert noise["position_m"] == pytest.approx(POSITION_FLOOR, rel=0.05)
     assert noise["pressure_a_pa"] == pytest.approx(PRESSURE_NOISE, rel=0.05)

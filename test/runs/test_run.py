@@ -1,4 +1,4 @@
-"""Recordings on a uniform grid: rate, gaps, inputs between samples, and what is refused."""
+"""Recordings on a uniform grid: rate, gaps, inputs between samples, and refusals."""
 
 from pathlib import Path
 
@@ -101,7 +101,7 @@ def test_a_bag_of_the_rig_gives_the_run_of_its_arrays(tmp_path: Path) -> None:
 
 
 def test_the_grid_follows_the_true_samples() -> None:
-    """The rig samples on the millisecond and stamps with 10 us of jitter: the run must be within what that moves."""
+    """The rig samples on the millisecond and stamps with 10 us of jitter: the run may differ by that motion."""
     _, recorded, run = rig("train_steps")
     truth = recorded.truth[:, 0]
     assert len(run) == len(truth)

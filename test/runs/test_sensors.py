@@ -1,4 +1,4 @@
-"""Sensor effects: taken back before states are guessed, predicted and refitted as any other."""
+"""Sensor effects: corrected before states are guessed, predicted and refitted as any other effect."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -59,7 +59,7 @@ def seen(effect: str) -> tuple[Model, np.ndarray, Run]:
     )
 
 
-# what may be left, as a share of what the effect did, rms
+# permitted remainder as a share of the sensor error, rms
 @pytest.mark.parametrize(("effect", "share"), [(OFFSET, 0.01), (GAIN, 0.01), (DELAY, 0.05), ("backlash", 0.5)])
 def test_what_the_sensors_did_is_taken_back(effect: str, share: float) -> None:
     model, states, run = seen(effect)
@@ -110,7 +110,7 @@ def test_the_true_sensors_predict_the_independent_rig(effect: str) -> None:
 
 
 def found_on_rig(effect: str) -> tuple[Model, Refit]:
-    """True model, and the refit of the sensor effect from nothing."""
+    """True model, and the refit of the sensor effect from zero."""
     base, true, run = on_rig(effect)
     free = [name for name in true.parameters if name.startswith(effect)]
     start = with_effect(base, effect, **dict.fromkeys(SIZES[effect], 0.0))
@@ -128,7 +128,7 @@ def test_sensor_effects_are_refitted_from_nothing(effect: str) -> None:
 
 
 def test_the_prior_on_starts_is_on_what_sensors_read() -> None:
-    """A guess made with sensors taken for true does not pull an offset, refitted later, towards nothing."""
+    """A guess that assumes ideal sensors does not pull an offset, refitted later, towards zero."""
     base, _, run = own("steps", seconds=3.0)
     neutral = with_effect(base, OFFSET, offset_a=0.0, offset_b=0.0)
     segments = cut(neutral, [run], 0.5)
@@ -139,7 +139,7 @@ def test_the_prior_on_starts_is_on_what_sensors_read() -> None:
     np.testing.assert_allclose(away[:, 2], 5e3 / segments.scale[:, 2])
 
 
-def test_time_runs_anew_in_every_recording() -> None:
+def test_time_restarts_in_every_recording() -> None:
     """Friction that warms up does so in the second recording as it did in the first."""
     base, _, run = own("steps", seconds=3.0)
     model = base.with_effects(

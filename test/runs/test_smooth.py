@@ -1,4 +1,4 @@
-"""Local polynomials: exact on polynomials, and their noise is what they say."""
+"""Local polynomials: exact on polynomials, with noise as stated."""
 
 import numpy as np
 import pytest

@@ -130,7 +130,7 @@ def test_what_the_data_do_not_touch_is_not_determined() -> None:
 
 
 def test_a_spoilt_segment_is_left_out() -> None:
-    """Somebody leans on the axis for a quarter of a second: a position no parameter explains."""
+    """Somebody leans on the axis for a quarter of a second: no parameter explains the position."""
     model, _, run = own("steps", seconds=6.0)
     position = run.position.copy()
     position[2600:2850] += 5e-3 * np.sin(np.pi * np.arange(250) / 250)

@@ -1,4 +1,4 @@
-"""Refits that go on from others, of effects that were switched off, and at bounds."""
+"""Refits that continue others, of effects that were switched off, and at bounds."""
 
 from functools import lru_cache
 
@@ -29,7 +29,7 @@ def base() -> tuple[Model, Run, Refit]:
 
 @lru_cache(maxsize=1)
 def added() -> Refit:
-    """The refit that goes on from there with viscous friction, from nothing."""
+    """The refit that continues from there with viscous friction, from zero."""
     _, run, before = base()
     return refit(with_effect(before.model, VISCOUS, coefficient=0.0), [run], start=before)
 
@@ -47,7 +47,7 @@ def test_an_effect_added_to_a_refit_is_found_though_that_had_bent_the_rest() -> 
 
 
 def test_priors_stay_where_they_were_when_a_refit_goes_on() -> None:
-    """They are what was known before any data: not the earlier refit, which would count the same data twice."""
+    """Priors are the knowledge before any data, not the earlier refit, which would count the same data twice."""
     _, _, before = base()
     for name, estimate in added().estimates.items():
         if name in before.estimates:
@@ -62,7 +62,7 @@ def test_a_refit_that_goes_on_from_itself_stays() -> None:
         assert again.model[name] == pytest.approx(estimate.value, abs=0.5 * estimate.std), name
 
 
-def test_a_share_of_the_segments_tells_nearly_as_much() -> None:
+def test_a_share_of_the_segments_determines_nearly_as_much() -> None:
     model, _, run = own("steps", seconds=6.0)
     start = model.with_parameters({COULOMB: 75.0})
     part, every = (refit(start, [run], free=[COULOMB], share=share) for share in (0.3, 1.0))
@@ -97,7 +97,7 @@ def test_what_is_zero_by_default_has_a_prior() -> None:
 
 
 def slow_spool(omega: float) -> Run:
-    """What the default machine with such a spool shows, without noise."""
+    """A run of the default machine with such a spool, without noise."""
     model, _, run = own("steps", noisy=True, seconds=4.0)
     model = with_effect(model, SPOOL, angular_frequency=omega)
     start = model.state(p_a=3e5, p_b=3.9e5)
@@ -117,7 +117,7 @@ def test_a_spool_is_found_from_the_upper_bound(omega: float) -> None:
 
 
 def test_what_would_cross_a_bound_stays_on_it() -> None:
-    """Viscous friction cannot be negative: the rest is fitted as if it were not there."""
+    """Viscous friction cannot be negative: the other parameters are fitted as without it."""
     model, _, run = own("steps", seconds=4.0)
     start = with_effect(model, VISCOUS, coefficient=0.0).with_parameters({COULOMB: 60.0})
     found = refit(start, [run], free=[f"{VISCOUS}.coefficient", COULOMB], priors={COULOMB: 20.0})

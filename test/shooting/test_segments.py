@@ -11,7 +11,7 @@ STARTS = [np.array([0, 30, 1000, 1949]), np.array([], dtype=np.int64), np.array(
 
 
 def test_each_is_simulated_under_its_own_inputs_and_clock() -> None:
-    """Against the run simulated from the same state; friction that warms up by the clock tells the time apart."""
+    """Against the run simulated from the same state; friction that warms up shows whether the clock is right."""
     model, _, slow = own("slow", seconds=2.0)
     runs = [slow, own("steps", seconds=2.0)[2], own("sweep", seconds=2.0)[2]]
     warm = model.with_effects(
@@ -31,7 +31,7 @@ def test_each_is_simulated_under_its_own_inputs_and_clock() -> None:
                 np.testing.assert_allclose(found[k], alone[0], rtol=1e-12, atol=1e-15)
 
 
-def test_some_are_cut_alone() -> None:
+def test_some_segments_can_be_cut_alone() -> None:
     model, _, run = own("steps", seconds=4.0)
     runs, rows = [run, own("sweep", seconds=4.0)[2]], np.array([0, 3, 19, 20, 33])
     some, every = cut(model, runs, 0.2, rows), cut(model, runs, 0.2).pick(rows)

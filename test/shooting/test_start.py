@@ -1,4 +1,4 @@
-"""Starting states: near the true ones, wherever a window begins."""
+"""Starting states: near the true ones for every start of a window."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ AT = np.arange(0, 20_000, 500)
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_starts_are_near_the_true_states(kind: str) -> None:
-    """The median start; `test_windows` holds what the worst ones cost."""
+    """The median start; `test_windows` tests the errors from the worst ones."""
     model, truth, run = own(kind)
     error = np.median(np.abs(start_states(model, run, AT) - truth[AT]), axis=0)
     stiffness = model["lugre_friction.bristle_stiffness"]
@@ -57,7 +57,7 @@ def test_a_run_shorter_than_what_is_fitted() -> None:
 
 
 def test_a_gap_just_before_a_start_is_not_believed() -> None:
-    """What was bridged over the gap is far from what happened."""
+    """The values bridged over the gap differ greatly from the true motion."""
     model, truth, run = own("sweep")
     measured = run.measured.copy()
     position = run.position.copy()

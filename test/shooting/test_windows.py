@@ -1,4 +1,4 @@
-"""Prediction windows: the true machine scores near the noise, and nothing else does."""
+"""Prediction windows: only the true machine scores near the noise."""
 
 from dataclasses import replace
 
@@ -35,7 +35,7 @@ def test_the_true_machine_scores_one(kind: str) -> None:
 def test_the_true_machine_scores_one_on_the_independent_rig(name: str, seed: int) -> None:
     """The rig shares no code with the plant: with the rig's own parameters its recordings are predicted to the noise.
 
-    Creeping, the windows are full of breakaways, which magnify what is left of the error of a start.
+    In creep the windows are full of breakaways, which magnify the remaining error of a start.
     """
     model, _, run = rig(name, seed)
     found = scores(model, run)
@@ -45,7 +45,7 @@ def test_the_true_machine_scores_one_on_the_independent_rig(name: str, seed: int
 
 
 @pytest.mark.parametrize("name", ["train_sweep", "train_creep"])
-def test_smoothed_signals_alone_are_no_start(name: str) -> None:
+def test_smoothed_signals_alone_give_no_start(name: str) -> None:
     """Why starts are estimated: with the true parameters, windows from first guesses miss by many times the noise."""
     model, _, run = rig(name)
     starts = np.arange(0, len(run) - 1000, 1000)
@@ -104,7 +104,7 @@ def test_a_free_run_starts_once_and_hides_gaps() -> None:
 
 
 def test_a_free_run_of_the_true_machine_stays_near_the_rig() -> None:
-    """20 s of strokes: chambers and friction forget, and what remains of a start is a few micrometres."""
+    """20 s of strokes: the influence of the start decays to a few micrometres."""
     model, _, run = rig("train_steps")
     found = free_run(model, run)
     assert ratio(found.errors["position_m"], run.noise["position_m"]) < 3.0

@@ -1,4 +1,4 @@
-"""Sweeps over every executor: the same to the bit, nothing lost with a worker, nothing done twice."""
+"""Sweeps over every executor: equal to the bit, no result is lost with a worker, no work is done twice."""
 
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
@@ -17,7 +17,7 @@ NAMES = ("a", "b", "deadly", "c", "d", "e")
 
 @pytest.fixture(scope="module")
 def dask(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A cluster that lasts as long as the tests of this file."""
+    """A cluster for all tests of this file."""
     with cluster(tmp_path_factory.mktemp("dask")) as address:
         yield f"dask={address}"
 
@@ -60,7 +60,7 @@ def test_work_that_kills_every_worker_is_given_up_and_the_rest_is_done(tmp_path:
 
 
 def test_work_whose_worker_always_dies_is_tried_three_times() -> None:
-    """Alone each time: an executor that loses every worker gets it as often, and no more."""
+    """Alone each time: also an executor that loses every worker gets it only that often."""
     tried: list[str] = []
 
     class Deadly(Executor):
@@ -114,7 +114,7 @@ def test_problems_are_results_and_mistakes_end_the_sweep(tmp_path: Path) -> None
         (b'{"sweep": {"seed": 1}}\nnonsense\n', DataError, "line 2"),
     ],
 )
-def test_a_file_of_something_else_is_left_alone(
+def test_a_file_of_another_kind_is_left_alone(
     content: bytes, error: type[Exception], said: str, tmp_path: Path
 ) -> None:
     (tmp_path / "results").write_bytes(content)
@@ -134,6 +134,6 @@ def test_a_file_of_something_else_is_left_alone(
         ("dask=localhost", "takes the address of a scheduler"),
     ],
 )
-def test_an_executor_that_is_none(name: str, said: str) -> None:
+def test_an_unknown_executor(name: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         open_pool(name)

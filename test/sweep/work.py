@@ -12,13 +12,13 @@ from pneumo_ros.plant import load_model
 
 
 def moved(volts: float) -> list[float]:
-    """Where the default axis is after 50 ms at a constant voltage: every bit of it."""
+    """State of the default axis after 50 ms at a constant voltage, to the bit."""
     model = load_model("axis")
     return [float(value) for value in model.simulate(np.full(50, volts), model.state())[-1]]
 
 
 def counted(folder: str, name: str) -> str:
-    """`name`, after a mark in `folder` that tells how often this was called."""
+    """`name`, after a mark in `folder` that counts the calls."""
     with Path(folder, name).open("a") as file:
         file.write("x")
     return name
@@ -34,14 +34,14 @@ def dies_once(folder: str, name: str) -> str:
 
 
 def dies_always(folder: str, name: str) -> str:
-    """Kills its process whenever it is given the deadly name."""
+    """Kills its process for the deadly name."""
     if name == "deadly":
         os.kill(os.getpid(), signal.SIGKILL)
     return counted(folder, name)
 
 
 def fails(name: str) -> str:
-    """What a user's data may be, and what a program must not do."""
+    """Fails as unfit data of a user, or as a defect of the program."""
     if name == "unfit":
         raise DataError("this recording is unfit")
     if name == "wrong":

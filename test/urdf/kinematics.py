@@ -1,4 +1,4 @@
-"""Forward kinematics of a URDF: where its links stand for given positions of its joints."""
+"""Forward kinematics of a URDF: poses of its links for given joint positions."""
 
 from collections.abc import Mapping
 from xml.etree import ElementTree

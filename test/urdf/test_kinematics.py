@@ -1,4 +1,4 @@
-"""Where the links of every URDF stand, compared with positions computed by hand."""
+"""Link positions of every URDF, compared with positions computed by hand."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -62,7 +62,7 @@ def test_links_and_their_masses_stay_above_the_floor(file: str, position: float)
 
 @pytest.mark.parametrize("file", ROBOTS)
 def test_mass_and_collision_are_where_a_link_is_seen(file: str) -> None:
-    """All bodies here are even, so that the centre of mass is the middle of what is drawn."""
+    """All bodies here are uniform, so that the centre of mass is the centre of the drawn shape."""
     for link in made(file).findall("link"):
         visual = link.find("visual")
         if visual is None or link.get("name") == "base_link":

@@ -33,12 +33,12 @@ class Served:
 
     @property
     def port(self) -> int:
-        """Where it listens."""
+        """Its address."""
         return int(self.address.split(":")[2].split("/")[0])
 
     @property
     def token(self) -> str:
-        """What it printed."""
+        """Its output."""
         return self.address.partition("token=")[2]
 
     def close(self) -> int:
@@ -57,7 +57,7 @@ def served(leaking: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
 
 @pytest.fixture
 def tab(browser: Any, served: Served) -> Iterator[Tab]:
-    """A tab of the browser with a desk of its own, which must have asked nobody but the workbench."""
+    """A tab of the browser with its own desk, which must have sent requests only to the workbench."""
     opened = Tab(browser, served.address)
     yield opened
     opened.close()

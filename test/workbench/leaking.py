@@ -1,4 +1,4 @@
-"""Recordings of a machine whose piston leaks, by the independent rig: short, so that a refit takes seconds."""
+"""Short recordings of a rig machine whose piston leaks, so that a refit takes seconds."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""A tab of the browser on the workbench: what it shows, and all that it asked for and complained of."""
+"""A browser tab with the workbench: its content, its requests and its error messages."""
 
 from typing import Any
 from urllib.parse import urlsplit
@@ -10,7 +10,7 @@ class Tab:
     def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
         self.page = context.new_page()
-        self.page.set_default_timeout(300_000)  # a busy machine is no failure
+        self.page.set_default_timeout(300_000)  # a busy machine is not a failure
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.clicks = 0
@@ -45,19 +45,19 @@ class Tab:
         self.page.locator("#tab").get_by_text(name, exact=True).click()
 
     def see(self, selector: str, text: str = "") -> Any:
-        """Wait until an element that holds `text` is to be seen."""
+        """Wait until an element that contains `text` is visible."""
         found = self.page.locator(selector).filter(has_text=text).first
         found.wait_for(state="visible")
         return found
 
     def traces(self) -> list[dict[str, Any]]:
-        """Name, x and y of what the plot of the run shows."""
+        """Name, x and y of the traces in the plot of the run."""
         pick = "one => one._fullData.map(t => ({name: t.name, x: [...t.x], y: [...t.y], yaxis: t.yaxis}))"
         found: list[dict[str, Any]] = self.page.locator("#signals").evaluate(pick)
         return found
 
     def wait_for_traces(self, ready: Any) -> list[dict[str, Any]]:
-        """Until what the plot shows is `ready`."""
+        """Wait until the traces of the plot are `ready`."""
         for _ in range(1200):
             found = self.traces() if self.page.locator("#signals .main-svg").count() else []
             if ready(found):

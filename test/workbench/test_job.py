@@ -1,4 +1,4 @@
-"""A job without a browser: its end is told whatever brought it, and what a verb says when it fails."""
+"""A job without a browser: its end is always reported, also the message of a verb that fails."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def test_verbs_run_one_after_another(tmp_path: Path) -> None:
     assert "payload_mass" in (tmp_path / "effects.log").read_text()
 
 
-def test_cancel_is_told_at_once(tmp_path: Path) -> None:
+def test_cancel_is_reported_at_once(tmp_path: Path) -> None:
     told: list[str] = []
     job = Job("Tuning", [Line(("tune",))], tmp_path, lambda: told.append("done"), lambda: told.append("ended"))
     job.cancel()

@@ -1,4 +1,4 @@
-"""Jobs in a browser: found again after a reload, ended at will, apart from those of other tabs, told when wrong."""
+"""Jobs in a browser: found again after a reload, cancelled, separate from other tabs, errors reported."""
 
 import subprocess
 from collections.abc import Callable
@@ -17,7 +17,7 @@ def verbs_of(served: Served) -> list[str]:
 
 
 def begun(tab: Tab, served: Served) -> None:
-    """A long job goes on."""
+    """A long job runs."""
     tab.press("Diagnose")
     tab.see("#job-says", "Diagnosing")
     for _ in range(1200):
@@ -62,7 +62,7 @@ def test_two_tabs_do_not_disturb_each_other(tab: Tab, another: Open, served: Ser
     ended(tab, served)
 
 
-def test_what_a_verb_refuses_is_told(tab: Tab) -> None:
+def test_what_a_verb_refuses_is_reported(tab: Tab) -> None:
     for name in ("train_steps", "holdout_steps"):
         tab.page.get_by_role("group", name=f"What {name} is for").get_by_label("leave out").check()
     tab.see("#bags", "holdout_steps")
@@ -82,7 +82,7 @@ def test_a_bad_file_says_what_is_wrong_and_a_good_one_is_read(tab: Tab, leaking:
     (tmp_path / "notes.txt").write_text("no recording")
     choose(tab, "files", [tmp_path / "notes.txt"])
     tab.see("#upload-says", "notes.txt is no part of a recording")
-    assert len(tab.complaints) == 1  # the browser tells that it was refused
+    assert len(tab.complaints) == 1  # the browser reports the refusal
     assert "400" in tab.complaints.pop()
     choose(tab, "a folder", leaking / "train_steps")
     tab.see("#bags", "train_steps (uploads/train_steps)")

@@ -1,4 +1,4 @@
-"""The live tab with real nodes: what the axis does, a parameter set and one refused, and a recording."""
+"""The live tab with real nodes: the motion of the axis, a parameter set and one refused, and a recording."""
 
 import sys
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What the buttons do, as command lines; what a desk remembers; and how the verb answers wrong use."""
+"""The command lines of the buttons; the memory of a desk; and the verb's messages for wrong use."""
 
 import socket
 from pathlib import Path
@@ -53,7 +53,7 @@ def test_a_diagnosis_needs_both_roles() -> None:
         diagnose_plan(alone, "axis_1.yaml", 1)
 
 
-def test_recordings_of_one_name_are_told_apart(tmp_path: Path) -> None:
+def test_recordings_of_one_name_are_distinguished(tmp_path: Path) -> None:
     for name in ("one/run", "two/run", "two/holdout"):
         (tmp_path / name).mkdir(parents=True)
         (tmp_path / name / "metadata.yaml").touch()
@@ -75,7 +75,7 @@ def test_an_effect_is_taken_out_and_values_are_kept(tmp_path: Path) -> None:
         desk.refit()
 
 
-def test_a_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_port_that_is_taken_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -84,7 +84,7 @@ def test_a_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> Non
     assert f"cannot listen on port {port}" in capsys.readouterr().err
 
 
-def test_a_wrong_machine_file_is_told_before_anybody_opens_the_page(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_wrong_machine_file_is_reported_before_anybody_opens_the_page(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["workbench", "--port", "0", "--model", "axs", "--quiet"]) == 3
     assert "axis" in capsys.readouterr().err
 

@@ -92,7 +92,7 @@ def test_the_response_follows_a_slider(tab: Tab) -> None:
             break
         tab.page.wait_for_timeout(50)
     assert max(abs(a - b) for a, b in zip(before, after, strict=False)) > 1.0  # mm
-    tab.page.wait_for_timeout(600)  # the stops are told to the page once the slider rests
+    tab.page.wait_for_timeout(600)  # the page gets the stops once the slider rests
     tab.press("Keep as a variant")
     tab.see("#machine", "by hand")
     tab.view("Save")

@@ -1,4 +1,4 @@
-"""Who may talk to the workbench: nobody without its token, no other page, no other name; and what it sends."""
+"""Access to the workbench: only with its token, from its own page, under its own name; and the files it sends."""
 
 from http.client import HTTPConnection, HTTPResponse
 from urllib.parse import quote
@@ -19,12 +19,12 @@ def ask(served: Served, path: str, method: str = "GET", body: bytes | None = Non
 
 
 def cookie(served: Served) -> str:
-    """The cookie that the right token is given for."""
+    """The cookie in exchange for the right token."""
     return str(ask(served, f"/?token={served.token}").headers["Set-Cookie"])
 
 
 def known(served: Served) -> str:
-    """A Cookie header that is let in."""
+    """A Cookie header that is accepted."""
     return cookie(served).partition(";")[0]
 
 
@@ -37,7 +37,7 @@ PATHS = ("/", "/b/0123456789ab", "/_dash-layout", "/_dash-dependencies", "/repor
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_nothing_is_told_without_the_token(served: Served, path: str) -> None:
+def test_nothing_is_sent_without_the_token(served: Served, path: str) -> None:
     assert ask(served, path).status == 403
     assert ask(served, path, Cookie=f"pneumo_workbench_{served.port}=wrong").status == 403
 
@@ -59,7 +59,7 @@ def test_the_right_token_leads_to_a_desk_and_stays_in_a_cookie_no_script_sees(se
     assert ask(served, answer.headers["Location"], Cookie=known(served)).status == 200
 
 
-def test_the_address_of_a_desk_that_is_no_more_leads_to_a_new_one(served: Served) -> None:
+def test_the_address_of_a_desk_that_no_longer_exists_leads_to_a_new_one(served: Served) -> None:
     answer = ask(served, "/b/000000000000", Cookie=known(served))
     assert (answer.status, answer.headers["Location"]) == (303, "/")
 

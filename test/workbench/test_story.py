@@ -14,7 +14,7 @@ from pneumo_ros.plant import load_model
 
 
 def errors(tab: Tab) -> list[float]:
-    """The steps of the waterfall, in noise floors, as they are told."""
+    """The steps of the waterfall, in noise floors, as in its text."""
     words = tab.see("#error-content figcaption").inner_text()
     return [float(found) for found in re.findall(r"([\d.]+) x", words)]
 
@@ -27,7 +27,7 @@ def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> No
     tab.tick(LEAK.replace("_", " "))
     tab.press("Refit")
     tab.see("#job-says", "left")
-    # until then the waterfall of the machine as given may stand there
+    # until then the waterfall of the original machine may be shown
     tab.see("#error-content figcaption", LEAK.replace("_", " "))
     given, refitted, after, *_ = errors(tab)
     assert tab.clicks < 10
@@ -53,7 +53,7 @@ def saved(tab: Tab, path: Path) -> Path:
 
 
 def undone(tab: Tab) -> None:
-    """Undo leads back to the machine as given; the variant stays there to be chosen again."""
+    """Undo returns to the original machine; the variant can be chosen again."""
     tab.press("Undo")
     tab.see("#machine", "axis (as given)")
     assert not tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
@@ -63,7 +63,7 @@ def undone(tab: Tab) -> None:
 
 
 def typed(tab: Tab, machine: Path, folder: Path) -> None:
-    """The command lines that the page tells make the very same machine, and the same comparison."""
+    """The command lines that the page shows give the very same machine and the same comparison."""
     lines = tab.see("#commands", "pneumo add").inner_text().splitlines()
     assert [shlex.split(line)[:2] for line in lines] == [["pneumo", "add"], ["pneumo", "compare"]]
     for line in lines:

@@ -1,4 +1,4 @@
-"""Long series as a screen shows them."""
+"""Long series reduced to the resolution of a screen."""
 
 import base64
 

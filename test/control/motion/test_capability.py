@@ -1,4 +1,4 @@
-"""What the supply pressure can do, against the machine itself."""
+"""Speed and acceleration that the supply pressure allows, against the machine itself."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ def test_less_supply_does_less() -> None:
     half = replace(ABLE, supply_pressure=3.5e5)
     assert 0.0 < half.top_speed(1.0) < ABLE.top_speed(1.0)
     assert half.force(0.0, 1.0) == pytest.approx(4.1e-4 * 2.5e5)
-    dead = replace(ABLE, supply_pressure=0.0)  # a sensor that lies: no less than the atmosphere
+    dead = replace(ABLE, supply_pressure=0.0)  # a faulty sensor: no less than the atmosphere
     assert dead.supply == 1e5
     assert dead.top_speed(1.0) < 1e-9
     assert dead.fit(Limits()) == Limits()

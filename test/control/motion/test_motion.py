@@ -1,4 +1,4 @@
-"""What comes in makes one motion without jumps."""
+"""All references give one motion without jumps."""
 
 import math
 
@@ -135,7 +135,7 @@ def test_until_a_trajectory_begins_the_motion_goes_on() -> None:
     assert motion.at(3.0, 0.2) == Setpoint(0.2)
 
 
-def test_braking_resting_and_beginning_anew() -> None:
+def test_braking_resting_and_restarting() -> None:
     motion = moving()
     motion.brake(0.5, 0.04, "asked to")
     assert motion.reason == "asked to"

@@ -1,4 +1,4 @@
-"""Profiles keep their limits, end where they should, and join without a jump, from any motion."""
+"""Profiles keep their limits, end at the goal, and join without a jump, from any motion."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Trajectories: the interpolation of the contract, and what is refused with numbers or slowed."""
+"""Trajectories: the interpolation of the contract, and points that are slowed or refused with numbers."""
 
 import math
 
