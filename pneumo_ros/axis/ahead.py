@@ -35,7 +35,7 @@ def _fill(queue: "Queue[list[T] | BaseException]", items: Iterator[T], over: thr
     while more and not over.is_set():
         try:
             batch: list[T] | BaseException = list(islice(items, BATCH))
-        except BaseException as failure:  # told by whoever reads
+        except BaseException as failure:  # the reader raises it again
             batch = failure
         more = bool(batch) and not isinstance(batch, BaseException)
         _put(queue, batch, over)

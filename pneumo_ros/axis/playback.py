@@ -33,7 +33,7 @@ class Playback:
     """Plays the recording once per call of `play`, until `stop` is set."""
 
     def __init__(self, bag: Bag, overview: Overview, wanted: Callable[[str], bool], rate: float, offset: float) -> None:
-        """`wanted` tells by topic what is played; `rate` is recorded over real time; `offset` [s] is skipped."""
+        """`wanted` chooses the topics by name; `rate` is recorded over real time; `offset` [s] is skipped."""
         self.stop = threading.Event()
         self.sent = 0
         self.behind = 0  # ns, of the message that came latest

@@ -47,7 +47,7 @@ class Ticker:
     def _run(self) -> None:
         try:
             self._loop()
-        except Exception as failure:  # told by the main thread
+        except Exception as failure:  # the main thread reports it
             self._ended(failure)
 
     def _loop(self) -> None:

@@ -80,7 +80,7 @@ class Search:
         told: Callable[[int, float], object] = lambda count, least: None,
     ) -> None:
         """`begin` has the gains to start from; `costs` says what several sets of gains cost, such as `costs_here`;
-        `told` hears the number of evaluations so far and the least cost.
+        `told` is called with the number of evaluations so far and the least cost.
         """
         self._costs, self._told = costs, told
         self.evaluations, self.count = evaluations, 1

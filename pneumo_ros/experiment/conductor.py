@@ -26,7 +26,7 @@ class Conductor:
     """
 
     def __init__(self, programme: Programme, tell: Callable[[str], None] = lambda text: None) -> None:
-        """`tell` gets a sentence now and then."""
+        """`tell` is called with each progress message."""
         self.programme, self._tell = programme, tell
         self.recording: str | None = None
         self.outcomes: list[TrialResult] = []

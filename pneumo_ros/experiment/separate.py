@@ -17,7 +17,7 @@ CLEAR = 5.0  # noise deviations that distinguish effects, whatever was looked fo
 NOTHING = 2.0
 WHERE = (*FAMILIES, "what is known of the other parameters")
 
-Progress = Callable[[float], None]  # told the share that is done, 0 to 1
+Progress = Callable[[float], None]  # called with the share that is done, 0 to 1
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Messages as bytes, straight from the middleware's queues: what a recorder wants, at a tenth of an executor's cost.
 
 The middleware's own thread puts messages into a deep queue and notes when each arrived, so nothing depends on how soon
-they are fetched. The numbers that publishers give their messages tell how many never arrived.
+they are fetched. The sequence numbers of the publishers show how many messages never arrived.
 """
 
 from collections.abc import Hashable
@@ -36,7 +36,7 @@ class Intake:
     def __init__(self, owner: Node) -> None:
         """Topics are named as `owner` would name them."""
         self._owner = owner
-        # Its node is spun by nobody: an executor would take each message by itself and tell no time of arrival.
+        # Its node is spun by nobody: an executor would take the messages itself and give no time of arrival.
         self._node = Node(
             f"_{owner.get_name()}_intake",
             namespace=owner.get_namespace(),
@@ -95,7 +95,7 @@ def latches(profile: QoSProfile) -> bool:
 
 
 def _publisher(info: dict[str, Any]) -> Hashable:
-    """Which publisher a message came from; the same for all where rclpy does not tell."""
+    """Which publisher a message came from; the same for all where rclpy does not say."""
     return bytes((info.get("publisher_gid") or {}).get("data", b""))
 
 

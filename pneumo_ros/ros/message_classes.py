@@ -1,4 +1,4 @@
-"""Message types by name: their Python classes, and their definitions as the classes tell them.
+"""Message types by name: their Python classes, and their definitions, read from the classes.
 
 Definition files are not everywhere where classes are, and a recording must carry the definition that its bytes follow.
 """

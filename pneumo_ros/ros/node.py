@@ -42,7 +42,7 @@ class AxisNode(Node):
             super().__init__(name, automatically_declare_parameters_from_overrides=True, parameter_overrides=decided)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             raise UsageError(str(error)) from error
-        self.failure: Exception | None = None  # what ended this node; `run` tells it
+        self.failure: Exception | None = None  # what ended this node; `run` reports it
         self.end: Callable[[], None] = lambda: None  # asks for the end of the process; `run` says how
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.parameters = Parameters(self)

@@ -102,7 +102,7 @@ class Player(AxisNode):
                     break
             self._outputs.flush()
             self.end()
-        except Exception as failure:  # told by the main thread
+        except Exception as failure:  # the main thread reports it
             self.fail(failure)
 
     def _await_subscribers(self) -> None:

@@ -67,7 +67,7 @@ class JointReader:
     def __init__(self, joint: str, whole: bool = False) -> None:
         """Look for `joint`; with `whole` only where there are as many positions as names.
 
-        ros2_control leaves out what a joint has no interface for: then nobody can tell whose positions these are.
+        ros2_control leaves out what a joint has no interface for: then it is unknown whose positions these are.
         """
         self._joint, self._whole = joint, whole
         self._length, self._fixed, self._after = -1, b"", b""
@@ -129,7 +129,7 @@ class JointReader:
         return JointSample(stamp.sec * 1_000_000_000 + stamp.nanosec, message.position[index], velocity)
 
     def _index(self, message: JointState) -> int | None:
-        """Where the joint's position stands; None if there is none, or nobody can tell."""
+        """Where the joint's position stands; None if there is none, or it is unknown."""
         names, positions = list(message.name), len(message.position)
         if self._joint not in names or (self._whole and positions != len(names)):
             return None

@@ -60,7 +60,7 @@ class Spinner:
         try:
             while not self._stop.done():
                 self._executor.spin_until_future_complete(self._stop, timeout_sec=POLL)
-        except BaseException as failure:  # whatever a callback raises is told by the main thread
+        except BaseException as failure:  # the main thread reports what a callback raises
             self.failure = failure
         finally:
             self._ended()
@@ -70,7 +70,7 @@ def run(make: Callable[[], Sequence[AxisNode]], name: str, ros_args: Sequence[st
     """Run the nodes that `make` builds until SIGINT or SIGTERM; returns the exit code of the process.
 
     `name` introduces messages; `ros_args` are the arguments rclpy reads, None for those of the command line. A
-    PneumoError is told in one line and gives its exit code; anything else is told with its traceback and gives 1.
+    PneumoError is reported in one line and gives its exit code; anything else with its traceback, and gives 1.
     """
     listen_for_signals()
     try:

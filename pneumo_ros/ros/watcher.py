@@ -33,7 +33,7 @@ SETTINGS = (Setting("joint_name", contract.JOINT, "the piston in joint_states", 
 
 
 class Watcher(AxisNode):
-    """Tells what it hears."""
+    """Reports what it hears."""
 
     def __init__(self) -> None:
         super().__init__("watcher", SETTINGS)
@@ -113,7 +113,7 @@ def _say(line: dict[str, Any]) -> None:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node; returns the exit code of the process."""
-    given = parse("watcher", "Tell what an axis does as lines of JSON.", SETTINGS, args)
+    given = parse("watcher", "Report what an axis does as lines of JSON.", SETTINGS, args)
     return run(lambda: [Watcher()], "watcher", given.ros)
 
 

@@ -28,7 +28,7 @@ class Guide:
     """
 
     def __init__(self, law: Law) -> None:
-        """`law` tells what is known of machine and valve."""
+        """`law` holds what is known of machine and valve."""
         self.law, self.mode = law, Mode.FOLLOWING
         self.limits, self.motion = Limits(), Motion(Limits())
         self.slow_down = self.vent_unseen = False
@@ -63,7 +63,7 @@ class Guide:
         return 0.0 if self.mode is Mode.STOPPED or self.supply.lost else None
 
     def restart(self, time: float, position: float) -> None:
-        """Begin anew from where the piston is, after measurements stayed away or the clock was set."""
+        """Restart from where the piston is, after a pause of the measurements or a step of the clock."""
         self.motion.restart(time, position, "measurements stayed away")
 
     def supplied(self, pressure: float, time: float) -> None:

@@ -18,7 +18,7 @@ SETTINGS = (
     Setting("reference_timeout", 0.2, "age of a moving reference at which its last position stands", "s", 0.001, 60.0),
     Setting("trajectory.slow_down", False, "slow down trajectories that ask for too much; false: refuse them"),
     Setting("minimum_supply", 2e5, "supply/pressure below which 0 V is sent; 0: never", "Pa", 0.0, 1e8),
-    Setting("vent_unseen", False, "vent even if no supply/pressure tells that the supply is shut off"),
+    Setting("vent_unseen", False, "vent even if no supply/pressure shows that the supply is shut off"),
 )
 
 

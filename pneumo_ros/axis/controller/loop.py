@@ -11,7 +11,7 @@ JUMP = 1.0  # s; a stamp this much before the last one means that the clock was 
 class Loop:
     """One control loop. Stamps [ns] are those of headers; `time` [s] begins at 0 and rises however the clock is set.
 
-    After a pause, and when the clock was set, the law begins anew, and the motion where the piston is.
+    After a pause, and when the clock was set, the law restarts, and the motion restarts where the piston is.
     """
 
     def __init__(self, law: Law, timeout: float) -> None:
@@ -69,7 +69,7 @@ class Loop:
         return min(max(voltage, -most), most)
 
     def _in_order(self, stamp: int, position: float) -> bool:
-        """Whether a measurement is to be answered; sets the time, and begins anew where it has to."""
+        """Whether a measurement needs a command; sets the time, and restarts the law after a pause."""
         if self._last is None or stamp < self._last - JUMP * 1e9:
             self._origin = stamp - round(self.time * 1e9)
         elif stamp < self._last:

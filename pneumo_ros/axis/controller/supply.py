@@ -36,7 +36,7 @@ class Supply:
         """Raise UsageError unless the supply is shut off, as measured or, where nobody measures, as `unseen` says."""
         if self.pressure is None and not unseen:
             raise UsageError(
-                "no supply/pressure tells that the supply is shut off; shut it, then set vent_unseen to true"
+                "no supply/pressure shows that the supply is shut off; shut it, then set vent_unseen to true"
             )
         if not self.shut_off(atmosphere):
             raise UsageError(

@@ -13,5 +13,5 @@ SETTINGS = (
     Setting("measurement_timeout", 0.2, "silence of the plant that ends the experiment", "s", 0.01, 60.0, live=False),
     PRIORITY,
     Setting("wait", 10.0, "longest wait for the plant at the start", "s", 0.0, 3600.0, live=False),
-    Setting("events", False, "tell what happens on stdout as lines of JSON; the end of stdin ends it", live=False),
+    Setting("events", False, "report progress on stdout as lines of JSON; the end of stdin ends it", live=False),
 )  # fmt: skip

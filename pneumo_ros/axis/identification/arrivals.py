@@ -31,7 +31,7 @@ class Arrivals:
     """Looks at recordings again and again."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        """`clock` tells the time [s]."""
+        """`clock` returns the time [s]."""
         self._clock = clock
         self._seen: dict[Path, _Seen] = {}
 

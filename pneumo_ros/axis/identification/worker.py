@@ -1,4 +1,4 @@
-"""One job at a time in a process of its own; what it tells comes back line by line."""
+"""One job at a time in a process of its own, which reports line by line."""
 
 import json
 import subprocess
@@ -34,7 +34,7 @@ class Worker:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the process of a job under way; nothing more is told."""
+        """End the process of a job under way; it reports nothing more."""
         self._stopped = True
         process, thread = self._process, self._thread
         if process is not None and process.poll() is None:
@@ -69,7 +69,7 @@ class Worker:
         try:
             process.stdin.write(job)
             process.stdin.close()
-        except BrokenPipeError:  # it could not even start; its complaints tell why
+        except BrokenPipeError:  # it could not even start; its stderr says why
             return last
         for text in process.stdout:
             last = json.loads(text)

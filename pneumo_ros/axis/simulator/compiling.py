@@ -58,7 +58,7 @@ class Compiler:
 
     def _compile(self, model: Model) -> Exception | None:
         given = json.dumps({"model": model.as_dict(), "files": self._files})
-        # a failure there is met again, and told, when the kernel is loaded here
+        # a failure there happens again, and is reported, when the kernel is loaded here
         subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
         try:
             model.outputs(model.simulate([0.0], model.state()))

@@ -35,7 +35,7 @@ class Sensors:
         self.reset()
 
     def reset(self) -> None:
-        """Begin the noise of the seed anew."""
+        """Restart the noise sequence of the seed."""
         self._random = np.random.Generator(np.random.PCG64(self.seed))
         self._draws: list[list[float]] = []
 

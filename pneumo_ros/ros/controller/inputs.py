@@ -29,7 +29,7 @@ class Inputs:
         """Move `joint`; other joints in the same messages are somebody else's."""
         self._node, self._joint = node, joint
         self.refused = ""  # what was refused last, and why
-        self._complained: dict[str, float] = {}  # kind of input -> when the log last told of one [s]
+        self._complained: dict[str, float] = {}  # kind of input -> when the log last reported it [s]
         self._commands = readers.JointReader(joint, whole=True)
         node.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
         node.create_subscription(JointTrajectory, TRAJECTORY, self._trajectory, SUBSCRIBE)

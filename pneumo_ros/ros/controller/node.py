@@ -46,7 +46,7 @@ class Controller(AxisNode):
     def __init__(
         self, tolerated: Callable[[str], bool] = lambda name: False, clock: Callable[[], int] | None = None
     ) -> None:
-        """`clock` [ns] tells how long measurements stay away; None: simulated time if used, else the steady clock.
+        """`clock` [ns] measures how long measurements stay away; None: simulated time if used, else the steady clock.
 
         Raises UsageError for an unknown parameter, unless it is `tolerated` or a machine file's, for a bad value, and
         where there is another controller.

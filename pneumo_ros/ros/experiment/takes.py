@@ -23,10 +23,10 @@ STAMPED = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE)
 
 
 class Takes:
-    """Hears the plant's topics; between `begin` and `end` they go into a bag, with the commands that are told.
+    """Hears the plant's topics; between `begin` and `end` they go into a bag, with the conductor's commands.
 
-    `heard` says for each topic when its last message was taken [s, monotonic]. What is told waits in queues, so that
-    nobody who tells has to wait for a disk.
+    `heard` says for each topic when its last message was taken [s, monotonic]. Messages wait in queues, so that
+    no sender has to wait for a disk.
     """
 
     def __init__(self, node: AxisNode, folder: Path, failed: Callable[[PneumoError], None]) -> None:
@@ -50,7 +50,7 @@ class Takes:
         self._thread = threading.Thread(target=self._work, name="takes", daemon=True)
         self._thread.start()
 
-    # --- what the conductor tells -------------------------------------------------------------------------------------
+    # --- calls of the conductor ---------------------------------------------------------------------------------------
 
     def begin(self, name: str, stamp: int) -> None:
         """A trial begins with the sample of this stamp [ns]."""
@@ -103,7 +103,7 @@ class Takes:
             self._takes.remove(take)
 
     def _hear(self) -> None:
-        """Take over what was told and what has arrived."""
+        """Take over the calls of the conductor and the messages that have arrived."""
         while self._marks:
             name, stamp = self._marks.popleft()
             if name:

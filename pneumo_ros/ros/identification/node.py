@@ -91,7 +91,7 @@ class Identification(AxisNode):
             response.success, response.message = True, f"identifying from {len(self._used)} recordings{more}"
         return response
 
-    # --- what the work tells, in a thread of its own; the executor handles it ---------------------------------------
+    # --- reports of the work, which arrive in a thread of their own; the executor handles them ----------------------
 
     def _told(self, line: Line) -> None:
         self._lines.append(line)
@@ -147,7 +147,7 @@ class Identification(AxisNode):
     # --- applying -------------------------------------------------------------------------------------------------
 
     def _apply(self, result: dict[str, Any]) -> None:
-        """Set what was determined on the target, and tell what became of it."""
+        """Set what was determined on the target, and report whether it was accepted."""
         values, name = result_file.determined(result), self.parameters["target"]
 
         def done(successful: bool, reason: str) -> None:

@@ -1,4 +1,4 @@
-// Files and folders dropped on the page, or chosen, go to the server one by one; then the page is told to look.
+// Files and folders dropped on the page, or chosen, go to the server one by one; then the page lists them.
 "use strict";
 (() => {
   const desk = () => location.pathname.split("/").pop();

@@ -107,7 +107,7 @@ window.dash_clientside.bench = (() => {
   // --- the response to sliders -------------------------------------------------------------------------------------
   let stops = {};
   let place = {};
-  let told = 0; // timer that tells the stops to the page
+  let told = 0; // timer that sends the stops to the page
   let busy = false;
   let waiting = false;
 
