@@ -76,7 +76,7 @@ def test_hold_brakes_and_takes_no_reference() -> None:
 
 def test_vent_needs_a_supply_that_is_shut_off() -> None:
     run = moving()
-    with pytest.raises(UsageError, match="no supply/pressure tells"):
+    with pytest.raises(UsageError, match="no supply/pressure shows"):
         run.guide.vent(run.loop.time)
     run.guide.supplied(7e5, run.loop.time)
     with pytest.raises(UsageError, match=r"7e\+05 Pa; shut it off first, to 1.3e\+05 Pa or less"):

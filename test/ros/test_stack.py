@@ -176,7 +176,7 @@ def test_stop_and_hold_last_until_resume(left: AxisProbe) -> None:
     left.rests(0.3)
     answer = left.trigger("controller/vent")
     assert not answer.success
-    assert "no supply/pressure tells" in answer.message
+    assert "no supply/pressure shows" in answer.message
 
 
 def test_who_comes_late_hears_every_command_reliable_or_not(left: AxisProbe) -> None:
