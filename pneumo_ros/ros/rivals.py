@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
+from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
@@ -115,7 +116,15 @@ class Rivals:
     def _require_first(self) -> None:
         earlier = {claim.node for claim in self._others.values() if claim < self._own}
         if earlier:
+            self._deliver()
             raise self._refusal(earlier)
+
+    def _deliver(self) -> None:
+        """Let the nodes that were first hear of this one before it ends: discovery of its claim may take longer."""
+        end = time.monotonic() + WAIT_FOR_CLAIM
+        while self._claims.get_subscription_count() < 1 + len(self._others) and time.monotonic() < end:
+            time.sleep(POLL)
+        self._claims.wait_for_all_acked(Duration(seconds=max(end - time.monotonic(), POLL)))
 
     # --- publishers ---------------------------------------------------------------------------------------------------
 

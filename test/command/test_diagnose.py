@@ -140,6 +140,7 @@ def test_a_copy_is_not_held_out(folder: Path, tmp_path: Path, capsys: pytest.Cap
     assert "is a copy of steps, which is fitted" in line
 
 
+@pytest.mark.check
 def test_an_interrupt_leaves_what_was_found(folder: Path, tmp_path: Path) -> None:
     options = [
         "--holdout",

@@ -35,15 +35,20 @@ def added() -> Refit:
 
 
 def test_an_effect_added_to_a_refit_is_found_though_that_had_bent_the_rest() -> None:
-    true, run, before = base()
+    true, _, before = base()
     found = added()
-    cold = refit(with_effect(load_model(), VISCOUS, coefficient=0.0), [run])
     viscous = found.estimates[f"{VISCOUS}.coefficient"]
     assert viscous.value == pytest.approx(100.0, rel=0.05)
     assert viscous.determined
     assert found.costs[-1] < 0.5 * before.costs[-1]
-    assert found.costs[-1] < 1.001 * cold.costs[-1]
     assert found.model[COULOMB] == pytest.approx(true[COULOMB], rel=0.01)
+
+
+@pytest.mark.check
+def test_a_refit_that_goes_on_ends_as_low_as_one_from_the_default() -> None:
+    _, run, _ = base()
+    cold = refit(with_effect(load_model(), VISCOUS, coefficient=0.0), [run])
+    assert added().costs[-1] < 1.001 * cold.costs[-1]
 
 
 def test_priors_stay_where_they_were_when_a_refit_goes_on() -> None:

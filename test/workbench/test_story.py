@@ -28,7 +28,7 @@ def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> No
     tab.press("Refit")
     tab.see("#job-says", "left")
     # until then the waterfall of the original machine may be shown
-    tab.see("#error-content figcaption", LEAK.replace("_", " "))
+    tab.see("#error-content figcaption", LEAK)
     given, refitted, after, *_ = errors(tab)
     assert tab.clicks < 10
     assert after < 1.5
