@@ -22,7 +22,7 @@ ROS_MODULES = (
     "std_srvs",
     "trajectory_msgs",
 )
-# import name -> what pip calls it; what Debian and Ubuntu call it, where they have it
+# import name -> package name of pip; that of Debian and Ubuntu, where they have one
 LIBRARIES = {
     "numpy": ("numpy", "python3-numpy"),
     "scipy": ("scipy", "python3-scipy"),
@@ -42,7 +42,7 @@ LIBRARIES = {
 }
 OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
-DOMAINS = range(1, 102)  # the ports of higher ones overlap those that the system assigns itself
+DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs
 
 
 class MissingDependencyError(UsageError, ImportError):

@@ -4,7 +4,7 @@ import reprlib
 
 
 class PneumoError(Exception):
-    """Any failure that is explained to the user in words; `exit_code` is what a command then returns."""
+    """A failure that is explained to the user in words; a command then returns `exit_code`."""
 
     exit_code = 1
 

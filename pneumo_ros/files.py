@@ -11,7 +11,7 @@ from pneumo_ros.errors import DataError, UsageError
 
 
 def check_writable(path: str | Path) -> Path:
-    """`path` as a Path; UsageError when no file can be written there. Called before long work, which would be lost."""
+    """`path` as a Path; UsageError when no file can be written there. Call it before long work: no result is lost."""
     target = Path(path)
     folder = target.parent
     if not folder.is_dir():

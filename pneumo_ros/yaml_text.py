@@ -7,8 +7,8 @@ import yaml
 
 from pneumo_ros.errors import UsageError
 
-DEPTH = 64  # levels of lists and sections; at some hundreds Python raises an error that explains nothing to a user
-DIGITS = 400  # of a number: a double never has more, and 1:59:59... takes time that grows with its length squared
+DEPTH = 64  # levels of lists and sections; at some hundreds Python raises an error that does not help a user
+DIGITS = 400  # of a number: a double never has more, and the time to read 1:59:59... grows with its length squared
 
 
 def load_yaml(text: str) -> Any:
@@ -19,7 +19,7 @@ def load_yaml(text: str) -> Any:
     """
     try:
         return yaml.load(text, _Loader)
-    except Exception as error:  # also what a bad date or a set of lists raises: all of it is bad YAML
+    except Exception as error:  # a bad date or a set of lists raises other errors: all mean bad YAML
         place = getattr(error, "problem_mark", None)
         where = f" at line {place.line + 1}" if place else ""
         reason = str(getattr(error, "problem", None) or error).splitlines() or ["it is no YAML"]

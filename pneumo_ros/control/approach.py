@@ -1,12 +1,12 @@
-"""Which velocity brings a piston that sticks at low speed to where it is wanted."""
+"""The wanted velocity that brings a piston that sticks at low speed to its target."""
 
 import math
 from typing import NamedTuple
 
 from pneumo_ros.control.setpoint import Setpoint
 
-PASSED = 0.6  # share of a detour after which it turns back
-ENDING = 0.3  # share of the speed that may be left where the deceleration ends, for it to be a landing
+PASSED = 0.6  # share of a detour after which the piston turns back
+ENDING = 0.3  # a deceleration that leaves less than this share of the speed ends the motion
 
 
 class Wanted(NamedTuple):
@@ -23,11 +23,11 @@ class Approach:
     is that of Guenther et al. 2006; the root, of the proximate time-optimal servo of G. F. Franklin, J. D. Powell and
     M. Workman, Digital Control of Dynamic Systems, 1998).
 
-    Below the speed at which the Stribeck curve falls faster than drag rises, a piston cannot slide steadily: it stops,
-    and to break away again means a slip of some millimetres, because the force falls by F_s - F_c and the chambers'
-    springs are soft. Hence two rules of our own for where a motion ends. It is approached no slower than
-    `slowest`, until what is left is the way of stopping. And when the piston has stopped at the wrong place nearer than
-    `detour`, it first goes on past the right one by that much, where it slides steadily, and comes back.
+    Below the speed at which the Stribeck curve falls faster than drag rises, a piston cannot slide steadily: it stops.
+    When it breaks away again it slips some millimetres, because the force falls by F_s - F_c and the air springs are
+    soft. Hence two rules of our own for the end of a motion. The piston approaches it no slower than `slowest`, until
+    only the stopping distance is left. A piston that has stopped at a wrong place nearer than `detour` first moves past
+    the target by `detour`, so that it slides steadily, and then comes back.
     """
 
     def __init__(self) -> None:
@@ -60,7 +60,7 @@ class Approach:
         return Wanted(v, setpoint.acceleration + slope * (setpoint.velocity - velocity))
 
     def watch(self, setpoint: Setpoint, error: float, stuck: bool, tolerance: float, detour: float) -> None:
-        """Begin or end a detour of `detour` [m]; one is due where the piston is `stuck` beyond `tolerance` [m]."""
+        """Start or end a detour of `detour` [m]; one starts if the piston is `stuck` beyond `tolerance` [m]."""
         if setpoint.velocity != 0.0 or (self.detour * error < 0.0 and abs(error) > PASSED * detour):
             self.detour = 0.0
         elif self.detour == 0.0 and stuck and tolerance < abs(error) < PASSED * detour:
@@ -68,7 +68,7 @@ class Approach:
 
 
 def remaining(setpoint: Setpoint) -> float | None:
-    """Way [m] to where the setpoint comes to rest, if it does so with its present jerk; else None.
+    """Distance [m] to the place where the setpoint comes to rest, if its present jerk brings it to rest; else None.
 
     With v = v_d + a_d t + j t^2 / 2 the acceleration ends at T = -a_d / j, at the speed v_d + a_d T / 2 and after
     v_d T + a_d T^2 / 3.

@@ -1,4 +1,4 @@
-"""Cascade control: a mechanical loop wants a force, a pneumatic loop makes it."""
+"""Cascade control: a mechanical loop computes the wanted force, a pneumatic loop produces it."""
 
 import math
 
@@ -20,13 +20,13 @@ class Cascade(ApproachingLaw):
         F_d = M a_r + K_D s + F_friction + F_load         mechanical loop; F = A_a p_a - A_b p_b - F_atm
         F'  = F_d' + K_P (F_d - F)                        pneumatic loop, solved for the opening (see `pneumatics`)
 
-    The friction observer's bristles are bent by kappa s besides: at rest, where no velocity is seen, this is what
-    brings the force to breakaway. Departures: while the piston sticks under a moving setpoint they do not give way
-    against s, for where a slip ends the piston springs back, and pressures that followed would be lost for the next
-    breakaway; and where the setpoint is coming back to a piston ahead of it, so that s has another sign now than
-    `lead` later, it waits, loaded for where it is to go then. Scale of friction and load are learnt while the piston
-    slides; F_d' is taken where it is smooth, of M j_d, of K_D s and of what grows with speed; the paper's term in s
-    within F', there for the proof of stability, is left out, being less than 1 N/s here.
+    kappa s also bends the bristles of the friction observer: at rest, where the velocity is 0, it raises the force to
+    breakaway. Departures from the paper: While the piston sticks under a moving setpoint, the bristles do not move
+    against s: the piston springs back after a slip, and pressures that followed would be missing at the next breakaway.
+    If the setpoint is coming back to a piston ahead of it, so that s changes sign within `lead`, the piston waits,
+    loaded in the later direction. Scale of friction and load are learnt while the piston slides. F_d' has only smooth
+    terms: M j_d, K_D s and the friction that grows with speed. The paper's term in s within F', needed to prove
+    stability, is below 1 N/s here and is left out.
     """
 
     tuned = ("damping", "force_rate", "position_rate", "correction", "braking", "bandwidth")
@@ -63,7 +63,7 @@ class Cascade(ApproachingLaw):
         return force, rate + self.damping * (acceleration - state.acceleration)
 
     def _later(self, setpoint: Setpoint, state: AxisState) -> float:
-        """s [m/s] as it will be `lead` from now, if the piston stays where it is."""
+        """s [m/s] after `lead`, if the piston does not move."""
         left = remaining(setpoint)
         ahead = setpoint.ahead(self.lead) if left is None else Setpoint(setpoint.position + left)
         return self.wanted_at(ahead, state).velocity - state.velocity

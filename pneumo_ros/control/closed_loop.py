@@ -25,7 +25,7 @@ class SteppedPlant(Protocol):
         ...
 
 
-Sensor = Callable[[float, Array], Measurement]  # time [s], state (states,) -> what the law gets to see
+Sensor = Callable[[float, Array], Measurement]  # time [s], state (states,) -> what the law reads
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def closed_loop(
 ) -> Record:
     """Run `samples` samples from the plant's present state, time 0.
 
-    Raises what the plant raises, NumericalError when its state leaves the finite numbers.
+    Raises the errors of the plant: NumericalError when its state leaves the finite numbers.
     """
     states = np.empty((samples, len(plant.state)))
     times = plant.sample_time * np.arange(samples, dtype=np.float64)

@@ -49,10 +49,10 @@ _NO_DEAD_ZONE = {"right_limit": 0.0, "left_limit": 0.0, "right_slope": 1.0, "lef
 
 
 def load_control(name_or_path: str | Path) -> Control:
-    """The control file at a path, or the one of that name that comes with the package (`cascade`, ...).
+    """The control file at a path, or the shipped one of that name (`cascade`, ...).
 
-    Raises DataError when it cannot be read, UsageError for what is no control file, a law or gain of unknown name
-    (with the nearest), or a gain out of range.
+    Raises DataError when it cannot be read, UsageError for a file of another kind, an unknown law or gain (with the
+    nearest names), or a gain out of range.
     """
     path, shipped = Path(name_or_path), files("pneumo_ros.config").joinpath(f"control/{name_or_path}.yaml")
     try:
@@ -77,7 +77,7 @@ def _control(document: Any) -> Control:
     if not isinstance(law, str) or law not in LAWS:
         raise UsageError(unknown_name("law", law if isinstance(law, str) else brief(law), LAWS))
     gains, valve = _section(given, law), _section(given, "valve")
-    made = LAWS[law](gains)  # whether they are gains of it
+    made = LAWS[law](gains)  # checks the gains
     smoothing = valve.get("smoothing", SMOOTHING)
     if isinstance(smoothing, bool) or not isinstance(smoothing, int | float) or not 0.0 <= smoothing <= SMOOTHEST:
         raise UsageError(f"valve.smoothing is {brief(smoothing)}; it takes a voltage from 0 to {SMOOTHEST:g} V")

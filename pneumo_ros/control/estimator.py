@@ -18,7 +18,7 @@ class StateEstimator:
     """
 
     def __init__(self, bandwidth: float) -> None:
-        """Follow with `bandwidth` [rad/s]; it may be changed under way."""
+        """Follow with `bandwidth` [rad/s]; it may be changed at any time."""
         self.bandwidth = bandwidth
         self.reset()
 
@@ -39,7 +39,7 @@ class StateEstimator:
             self.reset()
             self.position, self.known, self.unmeasured, self._started = position, known, -known, True
             return
-        mean = 0.5 * (known + self.known) + self.unmeasured  # u rose in a straight line since
+        mean = 0.5 * (known + self.known) + self.unmeasured  # u is taken as linear between samples
         predicted = self.position + (self.velocity + 0.5 * mean * dt) * dt
         alpha, beta, gamma = self._gains_for(dt)
         surprise = position - predicted

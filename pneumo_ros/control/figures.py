@@ -1,4 +1,4 @@
-"""What a run of a control law is judged by."""
+"""Figures that judge a run of a control law."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from pneumo_ros.control.closed_loop import Record
 
 Array = NDArray[np.float64]
-STICKS, SLIPS = 5e-4, 5e-3  # m/s: below the one it sticks, above the other it slides
+STICKS, SLIPS = 5e-4, 5e-3  # m/s: below the first the piston sticks, above the second it slides
 
 
 @dataclass(frozen=True)
 class Tracking:
-    """Error from a time on: rms [m], peak [m]; valve activity [V/s]; breakaways, how often it stuck and slid on."""
+    """Error from a time on: rms [m], peak [m]; valve activity [V/s]; breakaways: how often it stuck and slid on."""
 
     rms: float
     peak: float
@@ -48,12 +48,12 @@ def tracking(record: Record, begin: float = 0.0) -> Tracking:
 def breakaways(velocity: Array) -> int:
     """How often a piston of that `velocity` [m/s] stuck and slid on."""
     speed = np.abs(velocity)
-    known = speed[(speed < STICKS) | (speed > SLIPS)] > SLIPS  # in between it keeps what it was
+    known = speed[(speed < STICKS) | (speed > SLIPS)] > SLIPS  # in between it does not change
     return int(np.count_nonzero(known[1:] & ~known[:-1]))
 
 
 def arrivals(record: Record, hold: float, tolerance: float = 3e-4) -> list[Arrival]:
-    """Every move of `record` but the first, which is none: each lasts for `hold` [s]."""
+    """Every move of `record`, each of `hold` [s]; the first is left out, because nothing moves in it."""
     n = round(hold / float(record.time[1] - record.time[0]))
     moves = len(record.time) // n
     return [_arrival(record, slice(k * n, (k + 1) * n), hold, tolerance) for k in range(1, moves)]

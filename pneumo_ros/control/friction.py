@@ -5,12 +5,12 @@ import math
 from pneumo_ros.control.machine import Machine
 
 SMALLEST = 1e-3  # N, least friction level that is divided by
-HEADROOM = 1.5  # most that a correction may bend the bristles, over what F_s does: F_s may be known too low
+HEADROOM = 1.5  # times the deflection at F_s, limit of a correction: the known F_s may be too low
 INFORMATIVE = 0.02  # m/s, sliding at this speed shows the level; below, the Stribeck curve is too steep
 LEAST, MOST = 0.3, 3.0  # range of the learnt scale
-LOADED = 0.5  # largest bias, of the force that the supply can make
-READY = 0.9  # of Coulomb friction: the force of a piston that waits, ready to break away but no nearer to it than that
-FORGETTING = 0.5  # 1/s, while it sticks: what was learnt at an end stop must not hold it there
+LOADED = 0.5  # largest bias, as a share of the force of the supply
+READY = 0.9  # of Coulomb friction: largest force of a piston that waits to break away
+FORGETTING = 0.5  # 1/s, while the piston sticks: a bias learnt at an end stop must not hold it there
 
 
 class FrictionObserver:
@@ -24,10 +24,10 @@ class FrictionObserver:
     z_ba and z_max, over some micrometres, is a step here; a breakaway_ratio of 0 gives LuGre); Guenther, Perondi, De
     Pieri and Valdiero 2006 (the correction, made of the tracking error; it acts while the piston sticks).
 
-    For v held over a sample the equation is linear in z, piece by piece, and the step is its exact solution: stable at
-    any speed and sample time, where an explicit one at 1 kHz is not above 0.1 m/s. sigma_1 is left out of F: it damps
-    the bristles' 84 Hz, which no valve follows. `learn` scales sigma_0 z, and adds a bias, to the force that
-    sliding is seen to take: friction changes its sign with the motion, a load does not.
+    For v held over a sample the equation is piecewise linear in z, and the step is its exact solution: stable at any
+    speed and sample time, while an explicit step at 1 kHz is unstable above 0.1 m/s. sigma_1 is left out of F: it damps
+    the bristles' 84 Hz, which no valve follows. `learn` fits a scale of sigma_0 z and a bias to the force measured
+    while sliding: friction changes its sign with the motion, a load does not.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -40,23 +40,23 @@ class FrictionObserver:
         self.z, self.sliding, self.scale, self.bias = 0.0, False, 1.0, 0.0
 
     def level(self, velocity: float) -> float:
-        """g(v) [N], the friction force of steady sliding without what grows with speed."""
+        """g(v) [N], the friction force of steady sliding without the terms that grow with speed."""
         m = self.machine
         ratio = min(abs(velocity) / m.stribeck_velocity, 30.0)
         return max(m.coulomb_friction + (m.static_friction - m.coulomb_friction) * math.exp(-ratio * ratio), SMALLEST)
 
     def running(self, velocity: float) -> float:
-        """What grows with speed [N]: sigma_2 v + C_d v |v|."""
+        """Friction that grows with speed [N]: sigma_2 v + C_d v |v|."""
         return (self.machine.viscous_friction + self.machine.drag * abs(velocity)) * velocity
 
     def running_slope(self, velocity: float) -> float:
-        """Its derivative [N s/m]."""
+        """Derivative of `running` [N s/m]."""
         return self.machine.viscous_friction + 2.0 * self.machine.drag * abs(velocity)
 
     def step(self, velocity: float, dt: float, correction: float = 0.0, *, held: bool = False) -> float:
-        """Go on by `dt` [s] at `velocity` [m/s]; `correction` [m/s] bends sticking bristles besides. Returns F [N].
+        """Advance by `dt` [s] at `velocity` [m/s]; `correction` [m/s] also bends sticking bristles. Returns F [N].
 
-        Bristles that are `held` go the way of the correction or stay, whatever the velocity.
+        `held` bristles bend only in the direction of the correction, whatever the velocity.
         """
         left = dt - self._bend(velocity, dt, correction, held)
         self.sliding = left > 0.0
@@ -68,8 +68,8 @@ class FrictionObserver:
         return self.force(velocity)
 
     def wait(self, velocity: float, dt: float, correction: float) -> float:
-        """Sticking for `dt` [s] more: whatever the velocity, bend bristles by `correction` [m/s] until they are ready
-        to go its way, and no farther. Returns F [N].
+        """Stick for another `dt` [s]: at any velocity, bend bristles by `correction` [m/s] up to the share READY of
+        Coulomb friction in its direction. Returns F [N].
         """
         way = math.copysign(1.0, correction)
         room = READY * self.machine.coulomb_friction / self.machine.bristle_stiffness - way * self.z
@@ -82,7 +82,7 @@ class FrictionObserver:
         return self.scale * self.machine.bristle_stiffness * self.z + self.bias + self.running(velocity)
 
     def learn(self, measured: float, velocity: float, share: float) -> None:
-        """Take up `share` of what is lacking to the `measured` friction [N]; only where sliding shows it.
+        """Correct `share` of the error to the `measured` friction [N], only while fast sliding shows it.
 
         Half goes to the scale, half to the bias; motion in both directions distinguishes them (normalised least mean
         squares: B. Widrow and S. D. Stearns, Adaptive Signal Processing, 1985).
@@ -99,7 +99,7 @@ class FrictionObserver:
         self.bias -= share * self.bias
 
     def _bend(self, velocity: float, dt: float, correction: float, held: bool) -> float:
-        """Bend the bristles elastically; returns for how long [s] of `dt`. What is left they slip."""
+        """Bend the bristles elastically; returns the time [s] of `dt` that this takes. In the rest they slip."""
         m = self.machine
         edge = m.breakaway_ratio * self.level(velocity) / m.bristle_stiffness
         if velocity * self.z > 0.0 and abs(self.z) > edge and self.sliding:

@@ -10,7 +10,7 @@ from pneumo_ros.errors import UsageError, brief
 class Gain:
     """Default value in `unit`, meaning, and the closed range of allowed values.
 
-    As an attribute of a class it is itself; read from an instance it is that instance's value, a float.
+    Read from a class it is the Gain itself; read from an instance it is that instance's value, a float.
     """
 
     default: float
@@ -24,7 +24,7 @@ class Gain:
     @overload
     def __get__(self, instance: object, owner: type) -> float: ...
     def __get__(self, instance: object | None, owner: type) -> "Gain | float":
-        # without __set__, a value stored in the instance hides this: it is reached only before one is
+        # there is no __set__: a value stored in the instance hides this, which runs only before that
         return self if instance is None else self.default
 
     def check(self, name: str, value: object) -> float:

@@ -17,13 +17,13 @@ from pneumo_ros.nearest import unknown_name
 class Law(ABC):
     """A control law. Subclasses declare their gains as class attributes and read them as `self.<gain>`.
 
-    `valve` turns the wanted opening of the valve into its voltage, `machine` is what is known of the plant; both may be
-    set, and gains tuned, between steps.
+    `valve` turns the wanted opening of the valve into its voltage, `machine` holds the known parameters of the plant;
+    both may be set, and gains tuned, between steps.
     """
 
     gains: ClassVar[Mapping[str, Gain]] = {}
     reads_pressures: ClassVar[bool] = False  # whether `step` uses the pressures of a measurement
-    inverts_flow: ClassVar[bool] = False  # whether it needs to know what flows through the valve
+    inverts_flow: ClassVar[bool] = False  # whether it needs the flow law of the valve
     tuned: ClassVar[tuple[str, ...]] = ()  # gains that are found by simulation, the ones that matter most first
 
     def __init_subclass__(cls) -> None:
@@ -38,7 +38,7 @@ class Law(ABC):
     ) -> None:
         """Take `gains` by name, defaults for the others.
 
-        Raises UsageError as `tune` does, and for a machine whose valve flow the law needs and no law knows.
+        Raises UsageError as `tune` does, and when the law inverts the valve flow but the machine lists no `FLOW`.
         """
         self.valve, self.machine = valve or ValveInverse(), machine or Machine()
         if self.inverts_flow and not self.machine.has_flow:
@@ -54,7 +54,7 @@ class Law(ABC):
         self.reset()
 
     def tune(self, gains: Mapping[str, float]) -> None:
-        """Change gains, all of them or, with UsageError and the nearest names, none. States stay as they are."""
+        """Change all given gains, or none: UsageError, with the nearest names, for a bad one. States are kept."""
         checked = {}
         for name, value in gains.items():
             if name not in self.gains:
@@ -84,4 +84,4 @@ class Law(ABC):
 
     @abstractmethod
     def forget(self) -> None:
-        """Forget what the law itself keeps."""
+        """Forget the states of the law itself."""

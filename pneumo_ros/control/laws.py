@@ -1,4 +1,4 @@
-"""The control laws by the names under which nodes and commands know them."""
+"""The control laws by their names in nodes and commands."""
 
 from pneumo_ros.control.cascade import Cascade
 from pneumo_ros.control.law import Law

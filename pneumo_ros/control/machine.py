@@ -1,15 +1,15 @@
-"""What a control law knows of the machine: the parameters of its machine file that the laws' equations name."""
+"""The parameters of the machine file that the control laws use."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
 ATMOSPHERE = "rod_atmospheric_force"  # an effect without parameters
-FLOW = "arctan_flow"  # the flow that laws invert, by itself or with a share of choked_flow
+FLOW = "arctan_flow"  # the flow that laws invert, alone or with a share of choked_flow
 
 
 def _known(dotted: str, default: float, absent: float | None = None) -> float:
-    """A field for the parameter of that dotted name, `absent` where the machine lists no such effect."""
+    """A field for the parameter of that dotted name; its value is `absent` if the machine does not list the effect."""
     metadata = {"dotted": dotted, "absent": default if absent is None else absent}
     value: float = field(default=default, metadata=metadata)
     return value
@@ -48,17 +48,17 @@ class Machine:
     viscous_friction: float = _known("viscous_friction.coefficient", 0.0)
     mass_added: float = _known("payload_mass.mass_added", 0.0)
     load: float = _known("constant_load.load", 0.0)
-    spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # there: a spool without lag
+    spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # 1000: no lag
     spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
     atmosphere_on_rod: bool = True
-    has_flow: bool = True  # whether `FLOW` says what flows through the valve
-    effects: tuple[str, ...] = field(default=(), compare=False)  # that the machine lists, for messages
+    has_flow: bool = True  # whether `FLOW` gives the valve flow
+    effects: tuple[str, ...] = field(default=(), compare=False)  # of the machine, for messages
 
     @classmethod
     def of(cls, effects: Collection[str], values: Mapping[str, float]) -> "Machine":
         """The machine that lists `effects`, from values by dotted name, such as those of a `Model`.
 
-        What `values` lacks is absent from the machine; names that no law uses are passed over.
+        Parameters that `values` lacks count as absent; names that no law uses are ignored.
         """
         known = {f.name: float(values.get(f.metadata["dotted"], f.metadata["absent"])) for f in _FIELDS}
         return cls(**known, atmosphere_on_rod=ATMOSPHERE in effects, has_flow=FLOW in effects, effects=tuple(effects))
@@ -76,7 +76,7 @@ class Machine:
 
 _FIELDS = tuple(f for f in fields(Machine) if "dotted" in f.metadata)
 PARAMETERS: Mapping[str, float] = MappingProxyType({f.metadata["dotted"]: getattr(Machine, f.name) for f in _FIELDS})
-"""Dotted name -> default, of what the laws know; in the order of a machine file."""
+"""Dotted name -> default, of the parameters that laws use; in the order of a machine file."""
 
 ABSENT: Mapping[str, float] = MappingProxyType({f.metadata["dotted"]: f.metadata["absent"] for f in _FIELDS})
-"""Dotted name -> the value that stands for a machine without that effect."""
+"""Dotted name -> value for a machine without that effect."""

@@ -1,10 +1,10 @@
-"""What a control law gets to see of the axis."""
+"""The measurements that a control law reads."""
 
 from typing import NamedTuple
 
 
 class Measurement(NamedTuple):
-    """One sample: time [s], position [m], and where the plant sends them velocity [m/s] and pressures [Pa abs]."""
+    """One sample: time [s], position [m]; velocity [m/s] and pressures [Pa abs] if the plant sends them."""
 
     time: float
     position: float

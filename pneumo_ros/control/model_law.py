@@ -1,4 +1,4 @@
-"""What the laws that know the machine share: estimates of motion and force, and rest where the piston should be."""
+"""Common part of the laws that use the machine: estimates of motion and force, and rest at the target."""
 
 import math
 from abc import abstractmethod
@@ -28,17 +28,17 @@ class AxisState(NamedTuple):
 
 
 class ModelLaw(Law):
-    """A law that inverts the machine. Without pressures, or with such as are no numbers, it closes the valve.
+    """A law that inverts the machine. Without pressures, or if they are not finite, it closes the valve.
 
-    Once the piston rests within `tolerance` of where it is to stay, the valve is closed until the error is half as much
-    again: whatever a law does to a piston that sticks would end in another slip. After some stops at wrong places the
-    tolerance doubles with each further one, until the setpoint moves on: no law hunts for ever.
+    Once the piston rests within `tolerance` of its target, the valve stays closed until the error exceeds 1.5 times
+    that: moving a piston that sticks would end in another slip. After some stops at wrong places each further stop
+    doubles the tolerance, until the setpoint moves on: no law hunts for ever.
     """
 
     reads_pressures = inverts_flow = True
     bandwidth = Gain(300.0, "rad/s", "of the estimate of velocity and acceleration", 10.0, 3000.0)
-    tolerance = Gain(2e-4, "m", "error that is left alone at rest", 0.0, 0.1)
-    rest_span = Gain(5e-5, "m", "motion that counts as none: noise, and bristles that ring", 0.0, 0.01)
+    tolerance = Gain(2e-4, "m", "error that is accepted at rest", 0.0, 0.1)
+    rest_span = Gain(5e-5, "m", "motion that is ignored: noise, and bristles that ring", 0.0, 0.01)
 
     def forget(self) -> None:
         """Forget the estimates."""
@@ -65,7 +65,7 @@ class ModelLaw(Law):
 
     @abstractmethod
     def pause(self, state: AxisState) -> None:
-        """The valve stays closed for a sample, because the piston rests where it should."""
+        """The valve stays closed for a sample, because the piston rests at its target."""
 
     def _estimate(self, measurement: Measurement, p_a: float, p_b: float, dt: float) -> AxisState:
         air = chambers(self.machine, measurement.position, p_a, p_b)
@@ -85,5 +85,5 @@ class ModelLaw(Law):
 
     @property
     def patience(self) -> float:
-        """The tolerance [m], as far as stops at wrong places have widened it."""
+        """The tolerance [m], widened by stops at wrong places."""
         return self.tolerance * self.stops.patience

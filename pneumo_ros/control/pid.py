@@ -7,14 +7,14 @@ from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.control.stops import Stops
 from pneumo_ros.control.velocity import VelocityEstimator
 
-SPAN = 1e-4  # m, motion that counts as none
+SPAN = 1e-4  # m, motion that is ignored
 
 
 class Pid(Law):
     """opening = K_p e + integral of K_i e + K_d e', through the inverse of the dead zone, within the voltage limits.
 
     e' is the velocity of the setpoint minus that of the piston, the latter estimated unless it is measured. Anti-windup
-    is conditional integration: the integral rests while the opening is saturated and the error would drive it further
+    is conditional integration: the integral is held while the opening is saturated and the error would raise it further
     (Astrom and Hagglund, PID Controllers, 1995, sec. 3.5). Near the reference and nearly at rest the valve is closed
     until the error exceeds twice the tolerance: with stick-slip friction an integral would hunt for ever. After some
     stops at wrong places the tolerance widens, as with every law here.
@@ -25,7 +25,7 @@ class Pid(Law):
     integral = Gain(0.6, "V/(m s)", "K_i, opening per integrated position error", 0.0, 10000.0)
     derivative = Gain(50.0, "V s/m", "K_d, opening per velocity error", 0.0, 1000.0)
     integral_limit = Gain(0.3, "V", "largest share of the integral in the opening", 0.0, 10.0)
-    tolerance = Gain(1e-3, "m", "error that is left alone at rest", 0.0, 0.1)
+    tolerance = Gain(1e-3, "m", "error that is accepted at rest", 0.0, 0.1)
     rest_speed = Gain(0.01, "m/s", "speed below which the piston counts as resting", 0.0, 1.0)
     bandwidth = Gain(200.0, "rad/s", "of the velocity estimate", 1.0, 5000.0)
 

@@ -1,18 +1,18 @@
-"""Chambers and valve as a control law inverts them: from a wanted rate of force to the opening of the valve."""
+"""Inverse of chambers and valve for control laws: from a wanted rate of force to the opening of the valve."""
 
 import math
 from typing import NamedTuple
 
 from pneumo_ros.control.machine import Machine
 
-LEAST_VOLUME = 1e-8  # m3, that divisions stay finite whatever the parameters say
-STEEPEST = 1.5  # rad, where the arctangent of the flow is taken to be open
+LEAST_VOLUME = 1e-8  # m3, keeps divisions finite for all parameters
+STEEPEST = 1.5  # rad, arctangent of the flow at which the valve counts as fully open
 NORMAL_DENSITY, NORMAL_TEMPERATURE = 1.185, 293.15  # kg/m3, K: ISO 6358-1
 LINEAR = 0.999  # pressure ratio above which the flow is linear in it, as in the plant
 
 
 class Chambers(NamedTuple):
-    """What the balances of both chambers are made of at one instant: F' = fill * phi - stiffness * v - leak.
+    """Terms of the balances of both chambers at one instant: F' = fill * phi - stiffness * v - leak.
 
     F = A_a p_a - A_b p_b - F_atm [N]. With p_a' = gamma (R T q_a - A_a v p_a) / V_a and b likewise:
     fill = gamma R T (A_a w_a / V_a + A_b w_b / V_b) [N/(s rad)], where phi w is the flow through an edge; it differs
@@ -67,7 +67,7 @@ def _subsonic(ratio: float, b: float) -> float:
 def opening(machine: Machine, now: Chambers, velocity: float, force_rate: float) -> float:
     """Opening u [V] that makes F' = `force_rate` [N/s] at `velocity` [m/s]: phi = atan(k_u u) inverted.
 
-    A rate beyond what the valve can do gives the opening of `STEEPEST`.
+    A rate that the valve cannot reach gives the opening of `STEEPEST`.
     """
     wanted = force_rate + now.stiffness * velocity + now.leak
     conductance = now.fill if wanted >= 0.0 else now.vent

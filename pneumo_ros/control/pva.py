@@ -10,10 +10,10 @@ from pneumo_ros.control.setpoint import Setpoint
 class Pva(ModelLaw):
     """opening = u_d + K_p e + K_v e' + K_a e'' + K_f (F_d - F) + K_i integral of e, e = y_d - y.
 
-    u_d and F_d are what the model needs for the wanted motion: F_d = M a_d + F_friction(v_d) + F_load with the
-    friction of bristles that follow v_d, and u_d the opening that holds the chambers' force at v_d; the pressures feed
-    back F = A_a p_a - A_b p_b - F_atm, as long as motion is wanted: at rest the force may be anything that friction
-    holds. The integral works at rest only, while the opening is not saturated, and ends when the piston has arrived.
+    u_d and F_d are the model's opening and force for the wanted motion: F_d = M a_d + F_friction(v_d) + F_load with
+    the friction of bristles that follow v_d; u_d holds the chambers' force at v_d. F = A_a p_a - A_b p_b - F_atm is fed
+    back only while motion is wanted: at rest, friction can balance any force below its limit. The integral works only
+    at rest, while the opening is not saturated, and is cleared when the piston has arrived.
 
     Sources: S. R. Pandian, F. Takemura, Y. Hayakawa and S. Kawamura, Pressure Observer-Controller Design for Pneumatic
     Cylinder Actuators, IEEE/ASME Trans. Mechatronics 7 (2002), and J. Wang, J. Pu and P. Moore, A Practical Control
@@ -51,5 +51,5 @@ class Pva(ModelLaw):
         return wanted
 
     def pause(self, state: AxisState) -> None:
-        """Arrived: what the integral held is of no more use."""
+        """Arrived: clear the integral."""
         self._integral = 0.0

@@ -30,7 +30,7 @@ def steps(levels: Sequence[float], hold: float) -> Reference:
 def moves(levels: Sequence[float], hold: float, duration: float) -> Reference:
     """Like `steps`, but from one level to the next within `duration` [s] along x = 10 t^3 - 15 t^4 + 6 t^5.
 
-    Of all ways that begin and end at rest this has the least jerk (T. Flash and N. Hogan, The Coordination of Arm
+    Of all motions that begin and end at rest this has the least jerk (T. Flash and N. Hogan, The Coordination of Arm
     Movements, J. Neuroscience 5, 1985). It starts at the first level. Raises UsageError as `steps`, and for a duration
     that is not positive or longer than `hold`.
     """

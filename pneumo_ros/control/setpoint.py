@@ -1,4 +1,4 @@
-"""What a control law is to follow: wanted motion at one instant, and as a function of time."""
+"""The motion that a control law follows: at one instant, and as a function of time."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -13,7 +13,7 @@ class Setpoint(NamedTuple):
     jerk: float = 0.0
 
     def ahead(self, time: float) -> "Setpoint":
-        """The motion `time` [s] later, its jerk being what it is now."""
+        """The motion `time` [s] later, at the present jerk."""
         p, v, a, j = self
         return Setpoint(
             p + time * (v + time * (a / 2.0 + time * j / 6.0)), v + time * (a + time * j / 2.0), a + time * j, j

@@ -13,11 +13,11 @@ class SlidingMode(ApproachingLaw):
         S  = (a_r - a) + omega (v_r - v)                  v_r: wanted velocity, of setpoint and error (see `Approach`)
         F' = M (j_d + (lambda + omega) (a_r - a)) + dF_friction/dv a + M eta sat(S / Phi)
 
-    The first terms keep S where it is if the model holds (equivalent control), the last one drives it to zero in spite
-    of what the model lacks, eta being the jerk by which it may be wrong; within |S| < Phi it is linear and does not
-    chatter. It knows nothing of presliding. Sources: Slotine and Li, Applied Nonlinear Control, 1991, secs. 7.1-7.2;
-    G. M. Bone and S. Ning, Experimental Comparison of Position Tracking Control Algorithms for Pneumatic Cylinder
-    Actuators, IEEE/ASME Trans. Mechatronics 12 (2007), with S of second order in the position error as there.
+    The first terms keep S constant if the model is exact (equivalent control). The last term drives S to zero if the
+    model's error is below the jerk eta; within |S| < Phi it is linear and does not chatter. Presliding is not modelled.
+    Sources: Slotine and Li, Applied Nonlinear Control, 1991, secs. 7.1-7.2; G. M. Bone and S. Ning, Experimental
+    Comparison of Position Tracking Control Algorithms for Pneumatic Cylinder Actuators, IEEE/ASME Trans. Mechatronics
+    12 (2007), which also has S of second order in the position error.
     """
 
     tuned = ("reach", "layer", "speed_rate", "position_rate", "braking", "bandwidth")

@@ -1,20 +1,20 @@
-"""A slow spool sped up: the voltage that brings it where it should be sooner than it goes by itself."""
+"""Lead for a slow spool: the voltage that brings it to its wanted position faster."""
 
 import math
 
 from pneumo_ros.control.machine import Machine
 
-FASTEST = 500.0  # rad/s, from which on the effect of the plant fades away
+FASTEST = 500.0  # rad/s, above which the plant's effect fades out
 FASTER = 2.0  # times the spool's own frequency; noise grows with the square of it
 
 
 class SpoolLead:
-    """The spool x follows the voltage U as x'' = omega^2 (U - x) - 2 zeta omega x'. Followed by the model, and with
+    """The spool x follows the voltage U as x'' = omega^2 (U - x) - 2 zeta omega x'; this model gives x. With
 
         U = x + (omega_c^2 (x_d - x) - 2 (omega_c - zeta omega) x') / omega^2,    omega_c = 2 omega
 
     within the limits of the voltage, it reaches the wanted x_d critically damped at omega_c. Source: pole placement,
-    Astrom and Wittenmark, Computer-Controlled Systems, 1997, sec. 4.3. A machine without such a spool gets x_d itself.
+    Astrom and Wittenmark, Computer-Controlled Systems, 1997, sec. 4.3. Without spool dynamics U is x_d itself.
     """
 
     def __init__(self) -> None:

@@ -1,6 +1,6 @@
-"""How long a piston stands, and how often it has stopped on the way to one goal."""
+"""How long a piston has stood still, and how often it has stopped on the way to one goal."""
 
-STUCK = 0.05  # s without motion after which it will not go on by itself
+STUCK = 0.05  # s without motion after which the piston counts as stuck
 FREE = 6  # stops at wrong places before tolerances widen; a detour (see `Approach`) makes two
 WIDEST = 4  # times that a tolerance may double
 
@@ -9,7 +9,7 @@ class Stops:
     """Counts stops until the goal moves. A law that widens its tolerance by `patience` does not hunt for ever."""
 
     def __init__(self) -> None:
-        """Start where the first position is."""
+        """Start without stops."""
         self.still, self.count = 0.0, 0
         self._anchor, self._goal = 0.0, 0.0
 
@@ -20,11 +20,11 @@ class Stops:
 
     @property
     def patience(self) -> float:
-        """By how much to widen a tolerance: 1 at first, doubled by each stop beyond the free ones."""
+        """Factor on a tolerance: 1 at first, doubled by each stop beyond the FREE ones."""
         return float(2.0 ** min(max(self.count - FREE, 0), WIDEST))
 
     def watch(self, goal: float, position: float, span: float, arrived: bool, dt: float) -> None:
-        """Take a `position` [m]; less than `span` [m] of motion is none, and a stop where it has `arrived` is right."""
+        """Take a `position` [m]; motion below `span` [m] is ignored, and a stop when `arrived` is not counted."""
         before, self.still = self.still, self.still + dt
         self.count += before < STUCK <= self.still and not arrived
         if abs(position - self._anchor) > span:

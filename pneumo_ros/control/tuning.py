@@ -13,8 +13,8 @@ from pneumo_ros.control.sensors import NoisySensors
 from pneumo_ros.control.setpoint import Reference
 from pneumo_ros.errors import NumericalError
 
-EXPLORED, DRAWN = 0.5, 40  # share of the evaluations that are drawn, and how many at most: the rest is for the search
-SPREAD = 5.0  # they are drawn within so many times of where they begin
+EXPLORED, DRAWN = 0.5, 40  # share and largest number of evaluations at drawn gains: the rest is for the search
+SPREAD = 5.0  # largest factor between a drawn gain and its first value
 FACTORS = (1.5, 1.2)  # by which a gain is changed afterwards, the coarse one first
 WORST = 100.0  # cost of a run that fails
 NOISE_SEED, DRAW_SEED = 1, 0
@@ -45,7 +45,7 @@ class Weights:
 
 
 def cost(law: Law, trials: Sequence[Trial], weights: Weights | None = None) -> float:
-    """Mean over `trials` of what `law` makes of them; smaller is better, and the same law costs the same."""
+    """Mean cost of `law` over `trials`; smaller is better, and the same law costs the same."""
     return sum(_cost_of(law, trial, weights or Weights()) for trial in trials) / len(trials)
 
 
@@ -67,9 +67,9 @@ def _cost_of(law: Law, trial: Trial, weights: Weights) -> float:
 
 
 class Search:
-    """First a law's `tuned` gains are drawn at random, log-uniformly around where they begin. Then, from the best,
-    each in turn is multiplied and divided by a factor, and kept where that pays; when none does, the factor becomes
-    smaller: the pattern search of R. Hooke and T. A. Jeeves, J. ACM 8 (1961), without its leaps.
+    """First a law's `tuned` gains are drawn at random, log-uniformly around their first values. Then, from the best,
+    each in turn is multiplied and divided by a factor, and kept if the cost falls; if no cost falls, the factor becomes
+    smaller: the pattern search of R. Hooke and T. A. Jeeves, J. ACM 8 (1961), without its pattern moves.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Search:
         evaluations: int = 60,
         told: Callable[[int, float], object] = lambda count, least: None,
     ) -> None:
-        """`begin` has the gains to start from; `costs` says what several sets of gains cost, such as `costs_here`;
+        """`begin` has the gains to start from; `costs` returns the costs of several sets of gains, as `costs_here`;
         `told` is called with the number of evaluations so far and the least cost.
         """
         self._costs, self._told = costs, told
@@ -89,7 +89,7 @@ class Search:
         self.first = self.least
 
     def run(self) -> dict[str, float]:
-        """The gains of least cost, once nothing pays any more or all evaluations are spent."""
+        """The gains of least cost, once no change lowers it or all evaluations are used."""
         self._explore()
         for factor in FACTORS:
             while self.count < self.evaluations and self._round(factor):
@@ -119,7 +119,7 @@ class Search:
         return float(f"{min(max(value, gain.low), gain.high):.3g}")
 
     def _take(self, candidates: Sequence[dict[str, float]]) -> bool:
-        """Keep the candidate that is the best so far, if one is."""
+        """Keep the best candidate if it is the best so far; returns whether it is."""
         before = self.least
         for candidate, found in zip(candidates, self._costs(candidates), strict=True):
             self.count += 1

@@ -8,11 +8,11 @@ from pneumo_ros.errors import UsageError
 
 @dataclass(frozen=True)
 class ValveInverse:
-    """Voltage for a wanted opening, both in V, and the limits of what the voltage can reach.
+    """Voltage for a wanted opening, both in V, and the limits of the voltage.
 
     Dead zone as in the plant (its `dead_zone` effect): opening = m_r (U - u_r) above u_r, m_l (U + u_l) below -u_l.
-    Its exact inverse jumps by u_r + u_l at zero, and noise would make the valve chatter across; `smoothing` [V] is the
-    opening by which the jump is complete, linear below. Raises UsageError for values that are no valve.
+    Its exact inverse jumps by u_r + u_l at zero, and noise would make the valve chatter. `smoothing` [V] is the opening
+    at which the jump is complete; below it the jump is linear. Raises UsageError for values that no valve has.
     """
 
     right_limit: float = 0.78
@@ -47,7 +47,7 @@ class ValveInverse:
         return min(max(opening, low), high)
 
     def with_values(self, **values: float) -> "ValveInverse":
-        """A valve with other values; UsageError for values that are no valve, TypeError for unknown names."""
+        """A valve with other values; UsageError for values that no valve has, TypeError for unknown names."""
         return replace(self, **values)
 
     def _share(self, size: float) -> float:

@@ -12,7 +12,7 @@ class VelocityEstimator:
     """
 
     def __init__(self, bandwidth: float) -> None:
-        """Follow with `bandwidth` [rad/s]; it may be changed under way."""
+        """Follow with `bandwidth` [rad/s]; it may be changed at any time."""
         self.bandwidth = bandwidth
         self.reset()
 
@@ -36,6 +36,6 @@ class VelocityEstimator:
         return self.velocity
 
     def noise_gain(self, sample_time: float) -> float:
-        """Standard deviation of the velocity [m/s] per metre of that of white position noise (Brookner, 1.2.6)."""
+        """Standard deviation of velocity [m/s] over that of white position noise [m] (Brookner, 1.2.6)."""
         theta = math.exp(-self.bandwidth * sample_time)
         return float(math.sqrt(2.0) * ((1.0 - theta) / (1.0 + theta)) ** 1.5 / sample_time)

@@ -1,4 +1,4 @@
-"""The effects at hand as data: their order, a sentence for each, their equations as written, and all of it for JSON."""
+"""The available effects as data: their order, one sentence each, their equations as written, and records for JSON."""
 
 import inspect
 import math
@@ -16,7 +16,7 @@ ORDER = ("frame", "valve", "line", "chamber", "piston", "friction", "sensor")  #
 
 
 def catalogue(model: "Model") -> dict[str, "type[Effect]"]:
-    """Name -> effect: the frame of every machine, then all effects at hand, room by room."""
+    """Name -> effect: the frame of every machine, then all available effects, room by room."""
     library = model.library
     found = [library.frame(name) for name in FRAME] + [library.find(name) for name in library.names()]
     found.sort(key=lambda effect: ORDER.index(room(effect)) if room(effect) in ORDER else len(ORDER))
@@ -32,7 +32,7 @@ def room(effect: "type[Effect]") -> str:
 def summary(effect: "type[Effect]") -> str:
     """First sentence of the docstring, up to its equation if a colon announces one; at most 90 letters."""
     first = " ".join(inspect.cleandoc(effect.__doc__ or "").split("\n\n")[0].split())
-    sentence = re.split(r"[:;]|\.(?= [A-Z]|$)", first)[0]  # "Eqs. 1-2" does not end one
+    sentence = re.split(r"[:;]|\.(?= [A-Z]|$)", first)[0]  # the point in "Eqs. 1-2" ends no sentence
     return textwrap.shorten(sentence, 90, placeholder=" ...")
 
 
@@ -44,7 +44,7 @@ def body(effect: "type[Effect]", name: str) -> str:
 
 
 def helpers(effect: "type[Effect]") -> dict[str, str]:
-    """What an effect's functions use of their own file, by name and as it is written: constants, then functions."""
+    """Source of the constants, then of the functions, that an effect's functions use from their own file, by name."""
     constants, functions = dict[str, str](), dict[str, str]()
     readers = [vars(effect)[name] for name in effect.functions]
     source = inspect.getsource(inspect.getmodule(effect) or effect)
@@ -61,7 +61,7 @@ def helpers(effect: "type[Effect]") -> dict[str, str]:
 
 
 def record(effect: "type[Effect]", model: "Model") -> dict[str, Any]:
-    """One effect for JSON; a range without end is null there."""
+    """One effect for JSON; an infinite end of a range is null."""
     functions = effect.functions.values()
     return {
         "name": effect.name,

@@ -1,15 +1,15 @@
 """Compose a list of effects into the text of one kernel module.
 
-Data flow, not registration, decides the order: whoever reads a signal runs after all who write it. One step of length h
-is a Stormer-Verlet step (Hairer, Lubich, Wanner 2006, ch. I.1.4) made exponential where an effect returns a rate:
+Data flow decides the order, not registration: an effect that reads a signal runs after all that write it. One step of
+length h is a Stormer-Verlet step (Hairer, Lubich, Wanner 2006, ch. I.1.4), exponential where an effect returns a rate:
 
-    1. half a step of everything from the derivatives at the start;
+    1. all states take half a step with the derivatives at the start;
     2. velocities (states in m/s) take a whole step with the forces at mid step;
     3. all other states take a whole step with the derivatives at mid step and the mean velocity.
 
 It is of second order and time-symmetric for elastic parts (no artificial damping or growth below omega h = 2). Where
 der_x = source - rate x, a state moves by the exact solution for constant source and rate; half steps and velocities
-take a rational approximation (`maths.damped`) that decays likewise. Both are stable for any rate h.
+take a rational approximation (`maths.damped`) that also decays. Both are stable for any rate h.
 """
 
 import builtins
@@ -28,14 +28,14 @@ OBSERVED = (
     "y_measured", "p_a_measured", "p_b_measured",
 )  # fmt: skip
 _OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "static_level", "added_mass", "y_measured")
-SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # what a sensor reads unless effects differ
+SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # signal -> state that its sensor measures
 
 
 @dataclass(frozen=True)
 class Composition:
-    """Effects put together: states and parameters in kernel order, what can be observed, and the module text.
+    """Composed effects: states and parameters in kernel order, observed signals, and the module text.
 
-    `sensed` holds the states that sensors show; `true_sensors` says that they show them as they are.
+    `sensed` holds the states that sensors measure; `true_sensors`: no effect changes the readings.
     """
 
     effects: tuple[type[Effect], ...]
@@ -63,13 +63,13 @@ _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 
 
 class Resolver:
-    """Knows what every name in the equations of a composition stands for."""
+    """Resolves every name in the equations of a composition."""
 
     def __init__(self, effects: tuple[type[Effect], ...]) -> None:
         self.effects = effects
         self.states: dict[str, type[Effect]] = {}
         self.owners: dict[str, list[str]] = {}
-        self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects and which function of theirs
+        self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects, and the function of each
         for effect in effects:
             self._add(effect)
         self._check_names()
@@ -79,7 +79,7 @@ class Resolver:
             if state in self.states or state in SIGNALS or state in _RESERVED:
                 owner = self.states[state].name if state in self.states else "the kernel"
                 raise UsageError(
-                    f"state {state} of effect {effect.name} is already taken by {owner}; choose another letter"
+                    f"state {state} of effect {effect.name} is already taken by {owner}; choose another name"
                 )
             self.states[state] = effect
         for key in effect.parameters:
@@ -101,7 +101,7 @@ class Resolver:
             self._check_begin(state, effect)
             for name in {f"d_{state}", f"r_{state}", f"{state}_m", f"{state}_n"} & set(self.states):
                 raise UsageError(
-                    f"state {name} of effect {self.states[name].name} is too like state {state}; rename it"
+                    f"state {name} of effect {self.states[name].name} is too similar to state {state}; rename it"
                 )
         for name, owners in self.owners.items():
             if name in self.states or name in SIGNALS:
@@ -113,7 +113,7 @@ class Resolver:
         numbers = [s for s, owner in self.states.items() if not isinstance(owner.states[s].initial, str)]
         if isinstance(begin, str) and begin not in numbers:
             raise UsageError(
-                f"state {state} of effect {effect.name} begins like {begin!r}. {unknown_name('state', begin, numbers)}"
+                f"state {state} of effect {effect.name} starts at {begin!r}. {unknown_name('state', begin, numbers)}"
             )
 
     def parameter(self, name: str, effect: type[Effect] | None) -> str | None:
@@ -132,7 +132,7 @@ class Resolver:
         return f"{owners[0]}__{name}" if owners else None
 
     def check(self, function: Function, effect: type[Effect]) -> None:
-        """UsageError naming the nearest known names when an argument stands for nothing."""
+        """UsageError, with the nearest known names, for an unknown argument."""
         for name in function.reads:
             if name not in self.states and name not in SIGNALS and self.parameter(name, effect) is None:
                 known = [*self.states, *SIGNALS, *self.owners]
@@ -143,8 +143,8 @@ class Resolver:
 def compose(effects: tuple[type[Effect], ...]) -> Composition:
     """Compose effects, in the given order, into one kernel.
 
-    Raises UsageError when names clash, an argument is unknown, a single signal has two sources, or effects wait for
-    each other.
+    Raises UsageError when names clash, an argument is unknown, a single signal has two sources, or effects depend on
+    each other in a loop.
     """
     resolver = Resolver(effects)
     for effect in effects:

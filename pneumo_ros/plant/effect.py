@@ -9,12 +9,11 @@
             flow_a, flow_b = -leak, leak
             return flow_a, flow_b
 
-What an effect reads are the arguments of `equations` (states, signals, its own parameters, those of others); what it
-writes are the returned names: signals of `signals.py`, `der_x` for each state x it declares, and `rate_x` [1/s] where
-der_x = source - rate_x x, which lets the integrator take that part exactly. An effect whose force grows with velocity
-returns the slope as `resistance` too, which keeps the step stable however steep it is. An optional `advance` runs once
-after each step and returns states; an optional `caution` returns a sentence when parameters, though allowed, are
-unwise.
+An effect reads the arguments of `equations` (states, signals, its own parameters, those of others) and writes the
+returned names: signals of `signals.py`, `der_x` for each state x it declares, and `rate_x` [1/s] where
+der_x = source - rate_x x, so that the integrator solves that part exactly. An effect whose force grows with velocity
+also returns the slope as `resistance`, which keeps the step stable for any slope. An optional `advance` runs once
+after each step and returns states; an optional `caution` returns a sentence when parameters are allowed but unwise.
 """
 
 import ast
@@ -81,7 +80,7 @@ class Parameter:
 class State:
     """A state an effect integrates: unit, meaning and value at rest. A state in m/s is a velocity (see `compose`).
 
-    `initial` may name another state, whose value this one has where it begins: a load moves with its piston.
+    `initial` may name another state and then means its initial value: a load starts at its piston's velocity.
     """
 
     unit: str
@@ -91,7 +90,7 @@ class State:
 
 @dataclass(frozen=True)
 class Function:
-    """A function of an effect as data: what it reads, what it writes, its syntax tree and where its names live."""
+    """A function of an effect as data: the names it reads and writes, its syntax tree and its global names."""
 
     name: str
     reads: tuple[str, ...]
@@ -112,7 +111,7 @@ class Effect:
     functions: ClassVar[dict[str, Function]] = {}
     signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
     source: ClassVar[str] = ""
-    contains: ClassVar[tuple[str, ...]] = ()  # effects that it becomes at some of its values: they are simpler
+    contains: ClassVar[tuple[str, ...]] = ()  # simpler effects that it equals at some of its values
 
     def __init_subclass__(cls) -> None:
         cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
@@ -141,8 +140,8 @@ class Effect:
 def parse_function(function: Callable[..., Any], title: str) -> Function:
     """Read the arguments and the returned names of an effect's function from its source.
 
-    Raises UsageError when the source is not at hand, when it takes anything but plain arguments, or when it does not
-    end with its only `return`, of plain names.
+    Raises UsageError when the source cannot be read, when an argument is not plain, or when the function does not end
+    with its only `return`, of plain names.
     """
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]

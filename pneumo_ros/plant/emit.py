@@ -27,7 +27,7 @@ LANES = {lanes}
 def module_text(
     resolver: "Resolver", parameters: tuple[str, ...], observed: tuple[str, ...], sensed: tuple[str, ...]
 ) -> str:
-    """Text of the whole module for the effects known to `resolver`; `sensed`: the signals that its sensors alter."""
+    """Text of the whole module for the effects of `resolver`; `sensed`: readings, if an effect changes one of them."""
     book = SourceBook()
     names = [dotted.replace(".", "__") for dotted in parameters]
     states = list(resolver.states)

@@ -1,4 +1,4 @@
-"""Write the compiled entry points of a kernel: each loops over samples and calls what is inlined into it."""
+"""Write the compiled entry points of a kernel: each loops over samples and calls inlined functions."""
 
 LANES = 16  # parameter sets that advance together; a multiple of every SIMD width
 
@@ -29,7 +29,7 @@ def run(x, q, voltage, t0, h, stride, parts, out):
 
 
 def lanes_text(states: list[str], names: list[str]) -> str:
-    """The entry point of many lanes at once, and what advances one block of them."""
+    """The entry point of many lanes at once, and the function that advances one block of them."""
     arguments = [f"x[{i * LANES} + i]" for i in range(len(states))] + ["u[i]", "t[i] + elapsed", "h"]
     arguments += [f"q[{i * LANES} + i]" for i in range(len(names))]
     targets = ", ".join(states) + ","
@@ -74,7 +74,7 @@ def {name}(X, q, voltage, t, out):
 
 
 def sense_text(states: list[str], width: int, names: list[str]) -> str:
-    """The entry point that says what the sensors read along many lanes, each with its own parameters."""
+    """The entry point for the sensor readings along many lanes, each with its own parameters."""
     arguments = [f"X[b, k, {i}]" for i in range(len(states))] + ["U", "t", *names]
     unpack = "\n".join(f"        {name} = q[b, {i}]" for i, name in enumerate(names))
     store = "\n".join(f"            out[b, k, {i}] = values[{i}]" for i in range(width))

@@ -1,4 +1,4 @@
-"""Order the calls of effects by data flow: whoever reads a signal runs after all who write it."""
+"""Order the calls of effects by data flow: an effect that reads a signal runs after all that write it."""
 
 import ast
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ class FlowWriter:
         self._open: list[str] = []
 
     def value(self, name: str, effect: type[Effect] | None = None) -> str:
-        """Variable that holds `name` (state, signal, derivative or parameter), after writing whatever it needs."""
+        """Variable that holds `name` (state, signal, derivative or parameter), after writing the lines it needs."""
         if name in self.resolver.states:
             return name
         if effect is not None and name in effect.parameters:
@@ -40,7 +40,7 @@ class FlowWriter:
         if name not in self._done:
             if name in self._open:
                 chain = " -> ".join([*self._open[self._open.index(name) :], name])
-                raise UsageError(f"these signals wait for each other: {chain}; one effect of the loop needs a state")
+                raise UsageError(f"these signals depend on each other: {chain}; one effect of the loop needs a state")
             self._open.append(name)
             self._done[name] = self._assemble(name)
             self._open.pop()
@@ -73,11 +73,11 @@ class FlowWriter:
         return self._after(name, len(self._changes(name)))
 
     def _changes(self, name: str) -> list[tuple[type[Effect], str]]:
-        """Those who rewrite a signal: they read it and return it."""
+        """Functions that rewrite a signal: they read it and return it."""
         return [w for w in self.resolver.writers.get(name, []) if name in w[0].functions[w[1]].reads]
 
     def _after(self, name: str, count: int) -> str:
-        """Variable that holds a single signal after the first `count` of those who rewrite it."""
+        """Variable that holds a single signal after the first `count` functions that rewrite it."""
         if (name, count) not in self._stages:
             changes = self._changes(name)
             origins = [w for w in self.resolver.writers.get(name, []) if w not in changes]
@@ -116,7 +116,7 @@ class FlowWriter:
         self.lines.append(f"{targets} = {called}({arguments})")
 
     def _argument(self, name: str, effect: type[Effect], function: str) -> str:
-        """Variable of an argument: of a signal that the function rewrites, what those before it made of it."""
+        """Variable of an argument; for a signal that the function rewrites, its value after the rewrites before."""
         changes = self._changes(name) if name in effect.functions[function].writes and name in SIGNALS else []
         if (effect, function) in changes:
             return self._after(name, changes.index((effect, function)))

@@ -24,7 +24,7 @@ def _indented(lines: list[str], depth: int) -> str:
 def _step_lines(
     resolver: "Resolver", states: list[str], rates: list[str], names: list[str], ends: Callable[[int], tuple[str, str]]
 ) -> list[str]:
-    """Lines of one step with U held from t on; `ends`: what measured state i is at the samples before and after it."""
+    """Lines of one step with U held from t on; `ends`: measured state i at the samples before and after the step."""
     measured, own = _split(resolver, states)
 
     def between(suffix: str, share: str) -> list[str]:
@@ -75,7 +75,7 @@ def follow(X, q, voltage, t0, h, stride, parts, out):
 
 
 def follow_lanes_text(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
-    """The entry point that does so for many lanes at once, and what advances one block of them."""
+    """The same for many lanes at once, and the function that advances one block of them."""
     measured, own = _split(resolver, states)
     n, m, width = len(states), len(measured), len(names)
 

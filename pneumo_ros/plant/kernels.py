@@ -1,4 +1,4 @@
-"""Generated kernel modules on disk: where they live, how they are loaded, when compiling is announced."""
+"""Generated kernel modules on disk: their folder, how they are loaded, when compiling is announced."""
 
 import hashlib
 import importlib.util
@@ -33,7 +33,7 @@ def _writable_folder() -> Path:
     except OSError as error:
         if os.environ.get("PNEUMO_KERNELS"):
             raise UsageError(
-                f"PNEUMO_KERNELS={folder} cannot be written ({error.strerror}); name a folder that can"
+                f"PNEUMO_KERNELS={folder} cannot be written ({error.strerror}); name a writable folder"
             ) from error
         other = Path(tempfile.mkdtemp(prefix="pneumo_kernels_"))
         _log.warning("%s cannot be written; kernels are compiled again in %s", folder, other)
@@ -41,7 +41,7 @@ def _writable_folder() -> Path:
 
 
 def _write_once(path: Path, text: str) -> None:
-    """Write unless it is there: numba's cache is keyed by the file's time. A rename keeps readers from half a file."""
+    """Write unless it is there: numba's cache depends on the file's time. A rename never shows readers half a file."""
     if path.exists() and path.read_text() == text:
         return
     with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:

@@ -1,4 +1,4 @@
-"""What a machine file lacks, in words and with what to add: effects that others need, and parameters."""
+"""Sentences on what a machine file lacks and what to add: effects that others need, and parameters."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from pneumo_ros.plant.signals import SIGNALS
 def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
     """A sentence for the first effect that reads a state or parameter of an effect which is not among `effects`.
 
-    It names what is lacking and what to add. None when `library` knows no single effect that has what is read.
+    It names what is missing and what to add. None unless exactly one effect of `library` has it.
     """
     here = {effect.name for effect in effects}
     known = {name for effect in effects for name in (*effect.states, *effect.parameters, *_written(effect))}
@@ -45,16 +45,13 @@ def _sentence(reader: str, key: str, needed: type[Effect]) -> str:
     section = f"section '{name}' with {', '.join(needed.parameters)}"
     if name in FRAME:
         without = " (a machine without chambers is driven by a measured force)" if name == "chambers" else ""
-        return f"effect {reader} needs section '{name}', of which it reads {key}; add {section}{without}"
+        return f"effect {reader} needs section '{name}' (it reads {key}); add {section}{without}"
     also = f", and {section}" if needed.parameters else ""
-    return (
-        f"effect {reader} works only beside effect {name}, of which it reads {key}; add {name} to 'effects'{also}, or "
-        f"leave {reader} out"
-    )
+    return f"effect {reader} needs effect {name} (it reads {key}); add {name} to 'effects'{also}, or leave {reader} out"
 
 
 def _read(effect: type[Effect], known: set[str]) -> Iterator[str]:
-    """What an effect reads and no effect at hand has; of signals that nobody sets, what their defaults read."""
+    """Names that an effect reads and no listed effect has; for signals that none sets, names in their defaults."""
     for function in effect.functions.values():
         for name in function.reads:
             if name in SIGNALS and name not in known:

@@ -1,4 +1,4 @@
-"""Independent lanes in the blocks that the vectorised kernel advances together, spread over threads."""
+"""Independent lanes, in blocks that the vectorised kernel advances together, shared among threads."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -39,7 +39,7 @@ def _share(part: Callable[[slice], None], count: int, threads: int) -> None:
 
 @cache
 def _pool(process: int) -> "ThreadPoolExecutor":
-    """Threads that are kept: thousands of short calls would start new ones each time. A forked process has none."""
+    """Threads kept for thousands of short calls; each process has its own, because a forked one inherits none."""
     from concurrent.futures import ThreadPoolExecutor  # slow to import
 
     return ThreadPoolExecutor(os.cpu_count())
@@ -65,16 +65,16 @@ def run_lanes(
 
     _share(part, len(x), threads)
     kept = out.reshape(len(x), samples, n, width)
-    kept = kept if columns is None else kept[:, :, list(columns)]  # before lanes are put in order, which takes longest
+    kept = kept if columns is None else kept[:, :, list(columns)]  # before the lanes are reordered, the slowest part
     return np.asarray(kept.transpose(0, 3, 1, 2).reshape(-1, samples, kept.shape[2])[:count])
 
 
 def fitting(
     measured: ArrayLike, rest: ArrayLike, parameters: ArrayLike, frame: int, others: int, width: int
 ) -> tuple[Array, Array, Array]:
-    """What `follow_lanes` takes: measured (lanes or 1, samples, frame), rest (lanes, others), q (lanes, width).
+    """Arguments of `follow_lanes`: measured (lanes or 1, samples, frame), rest (lanes, others), q (lanes, width).
 
-    What all lanes share may come without its first axis. Raises UsageError for shapes that do not fit.
+    An array that all lanes share may lack its first axis. Raises UsageError for shapes that do not fit.
     """
     # the kernel would be compiled again for arrays that are read-only or not contiguous
     given, tail, q = (np.require(a, float, ["C", "W"]) for a in (measured, rest, parameters))

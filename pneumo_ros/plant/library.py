@@ -22,7 +22,7 @@ _ROOMS = ("valve", "line", "chamber", "piston", "friction", "sensor")
 
 @lru_cache(maxsize=1)
 def _catalogue_modules() -> Mapping[str, str]:
-    """Effect name -> module name, from the files that are there."""
+    """Effect name -> module name, from the files in the folders."""
     root = files("pneumo_ros.plant.effects")
     found = {}
     for room in _ROOMS:
@@ -40,7 +40,7 @@ def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
 
 
 def effects_of_file(path: str) -> Mapping[str, type[Effect]]:
-    """The effects of a user's Python file (it is executed: name only files you trust), again after an edit.
+    """The effects of a user's Python file (it is executed: name only files you trust), read again after an edit.
 
     Raises UsageError when the file is missing, does not run, or holds no effect.
     """
@@ -59,7 +59,7 @@ def _effects_of_file(path: str, _edited: int) -> Mapping[str, type[Effect]]:
         exec(compile(location.read_bytes(), location, "exec"), vars(module))
     except UsageError as error:
         raise UsageError(f"effects file {path}: {error}") from error
-    except Exception as error:  # whatever a user's file raises becomes a sentence
+    except Exception as error:  # any error in a user's file becomes a sentence
         raise UsageError(f"effects file {path} does not run: {type(error).__name__}: {error}") from error
     found = effects_in(module)
     if not found:
@@ -81,7 +81,7 @@ def _installed() -> dict[str, type[Effect]]:
 
 
 class Library:
-    """The effects at hand: catalogue, installed packages and the given files; files come first."""
+    """The available effects: catalogue, installed packages and the given files; files come first."""
 
     def __init__(self, effect_files: Iterable[str | Path] = ()) -> None:
         """Load `effect_files`; raises UsageError as `effects_of_file` does, or when a file redefines an effect."""

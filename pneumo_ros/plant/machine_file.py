@@ -30,7 +30,7 @@ def read_machine(name_or_path: str | Path) -> tuple[str, str]:
             return path.name, shipped.read_text(encoding="utf-8")
         return path.stem, path.read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
-        text = "it is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else "that is no name of a file"
+        text = "it is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else "that is not a file name"
         reason = error.strerror if isinstance(error, OSError) else text
         raise DataError(
             f"machine file {name_or_path} cannot be read ({reason}); "

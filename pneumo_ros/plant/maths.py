@@ -1,10 +1,10 @@
-"""Elementary functions for the equations of effects, written so that one text serves three readers.
+"""Elementary functions for the equations of effects, with one source for Python, scalar and vector code.
 
 The same source runs in pure Python, compiles to scalar machine code and vectorises over lanes: no branch that LLVM
 cannot turn into a select, no call into libm. Hence compiled and interpreted results agree to the last bit. Rational
 approximations of log and atan and the reduction of exp's argument are those of the Cephes library (S. L. Moshier,
-1989); exp and sin are polynomials through Chebyshev points, in Estrin's scheme, because a division would wait longer
-than they do. Relative errors are a few units in the last place.
+1989); exp and sin are polynomials through Chebyshev points, in Estrin's scheme, because a division would take longer.
+Relative errors are a few units in the last place.
 """
 
 import math
@@ -130,5 +130,5 @@ def relaxation(a: float) -> float:
 
 
 def damped(a: float) -> float:
-    """`relaxation` with exp(-a) replaced by its Pade approximant 1 / (1 + a + a^2 / 2): as stable, and cheaper."""
+    """`relaxation` with exp(-a) replaced by its Pade approximant 1 / (1 + a + a^2 / 2): equally stable, and cheaper."""
     return (1.0 + 0.5 * a) / (1.0 + a + 0.5 * a * a)

@@ -89,7 +89,7 @@ class Model:
         return self.composition.parameter(dotted)
 
     def usual_size(self, dotted: str) -> float:
-        """How far a parameter usually is from its neutral value, above 0; UsageError with the nearest names."""
+        """Usual distance of a parameter from its neutral value, above 0; UsageError with the nearest names."""
         self.specification(dotted)
         section, _, key = dotted.partition(".")
         return usual_size(next(e for e in self.composition.effects if e.name == section), key)
@@ -112,7 +112,7 @@ class Model:
     # --- variants ---------------------------------------------------------------------------------------------------
 
     def with_parameters(self, values: Mapping[str, object], name: str | None = None) -> "Model":
-        """The same effects with other values; UsageError, with the nearest names, leaves everything as it was."""
+        """The same effects with other values; UsageError, with the nearest names, for unknown or bad ones."""
         checked = _checked(self.composition, {**self.parameters, **values}, defaults=False)
         return Model(self.composition, checked, name or self.name, self.library)
 
@@ -136,7 +136,7 @@ class Model:
         return np.array(list(self.parameters.values()))
 
     def state(self, **given: float) -> Array:
-        """State vector (states,) with the given entries; others at rest, pressures at the atmosphere's.
+        """State vector (states,) with the given entries; others at rest, pressures atmospheric.
 
         Raises UsageError for unknown or non-finite entries, for positions beyond the stroke, and for chambers without
         volume at an end of the stroke.
@@ -152,10 +152,10 @@ class Model:
         return self._begin(given)
 
     def continued(self, other: "Model", state: ArrayLike) -> Array:
-        """State vector (states,) that goes on from a `state` (states,) of another model.
+        """State vector (states,) that continues from a `state` (states,) of another model.
 
-        States of the same name keep their values, those that `other` lacks begin as in `state`. Raises UsageError for
-        chambers without volume at an end of the stroke.
+        States of the same name keep their values, new ones start as in `Model.state`. Raises UsageError for chambers
+        without volume at an end of the stroke.
         """
         return self._begin(dict(zip(other.states, np.asarray(state, dtype=float).tolist(), strict=True)))
 
@@ -175,7 +175,7 @@ class Model:
             if self[f"chambers.volume_{side}"] <= swept:
                 raise UsageError(
                     f"chamber {side} has no volume left at its end: chambers.volume_{side} (at mid stroke) is "
-                    f"{self[f'chambers.volume_{side}']:g} m3, the piston sweeps {swept:g} m3 of it; give more"
+                    f"{self[f'chambers.volume_{side}']:g} m3, the piston sweeps {swept:g} m3 of it; increase it"
                 )
 
     def simulate(
@@ -192,8 +192,8 @@ class Model:
 
         Row k is the state at the END of sample k. `sample_time` [s] is divided into equal steps no longer than `step`
         [s]; `start` [s] is the time of the first sample. With `parts` > 1 a sample holds that many voltages one after
-        another. Raises NumericalError when the state leaves the finite numbers, naming the time, UsageError for a step
-        that is not positive or a voltage that does not fill whole samples.
+        another. Raises NumericalError, with the time, when the state leaves the finite numbers, and UsageError for a
+        step that is not positive or a voltage that does not fill whole samples.
         """
         held, x = _voltages(voltage), self._state_vector(state)
         out = np.empty((_whole(len(held), parts), len(x)))
@@ -222,13 +222,13 @@ class Model:
         threads: int = 1,
         columns: Sequence[int] | None = None,
     ) -> Array:
-        """Integrate many lanes at once, several times faster each than `simulate`; returns (lanes, samples, states).
+        """Integrate many lanes at once, each several times faster than `simulate`; returns (lanes, samples, states).
 
         voltage (n,) [V] is shared; lane i begins with voltage[first[i]] (default 0) and goes on as `simulate`.
-        states (lanes, states), parameters (lanes, parameters) or None for the model's own, samples defaults to what
-        the voltage holds; `start` [s], one or (lanes,), is the time of voltage[0]; `columns`: the states to return,
-        default all. Lanes that leave the finite numbers come back as they are. Raises UsageError for shapes that do
-        not fit.
+        states (lanes, states), parameters (lanes, parameters) or None for the model's own; samples: by default as many
+        as the voltage covers; `start` [s], one or (lanes,), is the time of voltage[0]; `columns`: the states to return,
+        default all. Lanes that leave the finite numbers are returned without an error. Raises UsageError for shapes
+        that do not fit.
         """
         x = np.array(states, dtype=float, ndmin=2)
         q = np.tile(self.values, (len(x), 1)) if parameters is None else np.array(parameters, dtype=float)
@@ -261,7 +261,7 @@ class Model:
 
         measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven);
         voltage: `parts` of them are held one after another between two samples; rest: values of the other states at
-        sample 0. The derivatives are what the equations claim, as the mean over the interval that ends at each sample:
+        sample 0. The derivatives are those of the equations, averaged over the interval that ends at each sample:
         where they differ from the measurement, the equation fails. Row 0 of the derivatives repeats row 1.
         """
         given, tail = np.array(measured, dtype=float, ndmin=2), np.array(rest, dtype=float, ndmin=1)
@@ -273,7 +273,7 @@ class Model:
         out = np.empty_like(X)
         held = np.array(voltage, dtype=float)
         if _whole(len(held), parts) < len(X) - 1:
-            raise UsageError(f"{len(held)} voltages do not reach over {len(X)} samples")
+            raise UsageError(f"{len(held)} voltages do not cover {len(X)} samples")
         stride, h = substeps(sample_time / parts, step)
         self.kernel.follow(X, self.values, held, 0.0, h, stride, parts, out)
         out[0] = out[1] if len(out) > 1 else 0.0
@@ -293,7 +293,7 @@ class Model:
         states: Iterable[str] | None = None,
         columns: Iterable[str] | None = None,
     ) -> tuple[Array, Array]:
-        """Follow one measured motion with many lanes of parameters, several times faster each than `follow`.
+        """Follow one measured motion with many lanes of parameters, each several times faster than `follow`.
 
         measured (samples, m) shared by all lanes or (lanes, samples, m); voltage shared; rest (others,) or (lanes,
         others); parameters (lanes, parameters). Returns what `follow` returns for each lane, to the bit: states (lanes,
@@ -304,7 +304,7 @@ class Model:
         given, tail, q = fitting(measured, rest, parameters, frame, len(self.states) - frame, len(self.parameters))
         held = np.array(voltage, dtype=float, ndmin=1)
         if _whole(len(held), parts) < given.shape[1] - 1:
-            raise UsageError(f"{len(held)} voltages do not reach over {given.shape[1]} samples")
+            raise UsageError(f"{len(held)} voltages do not cover {given.shape[1]} samples")
         stride, h = substeps(sample_time / parts, step)
         kept, wanted = self._indices(states), self._indices(columns)
         return follow_lanes(self.kernel, given, held, tail, q, kept, wanted, h, stride, parts, threads)
@@ -319,7 +319,7 @@ class Model:
     def outputs(
         self, states: ArrayLike, voltage: ArrayLike | None = None, start: float = 0.0, sample_time: float = 1e-3
     ) -> dict[str, Array]:
-        """What can be seen along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
+        """Signals along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
 
         `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract; the others as in `signals`.
         voltage (samples,) or one for all. Raises UsageError for too few.
@@ -328,8 +328,8 @@ class Model:
         U = np.zeros(len(X)) if voltage is None else np.array(voltage, dtype=float, ndmin=1)
         if len(U) == 1:
             U = np.repeat(U, len(X))
-        if len(U) < len(X):  # the kernel would read on beyond them
-            raise UsageError(f"{len(U)} voltages do not reach over {len(X)} samples")
+        if len(U) < len(X):  # the kernel would read beyond their end
+            raise UsageError(f"{len(U)} voltages do not cover {len(X)} samples")
         observed = np.empty((len(X), len(self.composition.observed)))
         self.kernel.observe(X, self.values, U, start + sample_time * np.arange(1, len(X) + 1), observed)
         result = {name: X[:, i] for i, name in enumerate(self.states)}
@@ -368,7 +368,7 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
 
 
 def _voltages(voltage: ArrayLike) -> Array:
-    held = np.atleast_1d(np.asarray(voltage, dtype=float))  # no copy: fits call this often, with minutes of it
+    held = np.atleast_1d(np.asarray(voltage, dtype=float))  # no copy: fits call this often, with minutes of data
     if held.ndim > 1 or not np.isfinite(held).all():
         raise UsageError(f"voltage of shape {held.shape} must be one row of finite numbers [V]")
     return held

@@ -1,4 +1,4 @@
-"""What the sensors read along simulated states: the states themselves, unless an effect changes the reading."""
+"""Sensor readings along simulated states: the states themselves, unless an effect changes the readings."""
 
 from typing import TYPE_CHECKING
 
@@ -25,8 +25,8 @@ def sense(
     """Readings (lanes, samples, signals) of position and, with chambers, of both pressures along lanes of states.
 
     states (lanes, samples, states), row k at the END of sample k, parameters (lanes, parameters) or None, voltage and
-    first as `Model.simulate_lanes` takes them; `start` [s], one or (lanes,), is the time of voltage[0]. Without an
-    effect on a sensor the readings are the states themselves, and no kernel is asked.
+    first as in `Model.simulate_lanes`; `start` [s], one or (lanes,), is the time of voltage[0]. Without an effect on a
+    sensor the readings are the states themselves, and no kernel runs.
     """
     if model.composition.true_sensors:
         columns = [model.states.index(name) for name in model.composition.sensed]

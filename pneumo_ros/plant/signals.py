@@ -3,8 +3,8 @@
 Frames and signs: positive `y` extends the rod and grows chamber a. Forces are positive when they oppose positive
 velocity. Mass flows are positive INTO the chamber they are named after. Pressures are absolute.
 
-Kinds: an *input* is given from outside; contributions to a *sum* add, to a *product* multiply; a *single* has at most
-one source, its default otherwise, and any number of effects that read and rewrite it, in the order of the effects list.
+Kinds: an *input* comes from outside; contributions to a *sum* add, those to a *product* multiply; a *single* has one
+source or its default, and any number of effects may read and rewrite it, in the order of the effects list.
 """
 
 from dataclasses import dataclass
@@ -48,16 +48,16 @@ _TABLE = (
     Signal("heat_a", "sum", "W", "0.0", "heat flow into the gas of chamber a"),
     Signal("heat_b", "sum", "W", "0.0", "heat flow into the gas of chamber b"),
     # piston and friction
-    Signal("drive", "single", "N", "U", "force that drives the piston: of the chambers, or the input itself"),
+    Signal("drive", "single", "N", "U", "drive force on the piston: from the chambers, or the input itself"),
     Signal("force", "sum", "N", "0.0", "load force on the piston, against positive velocity"),
     Signal("friction", "sum", "N", "0.0", "friction force on the piston, against positive velocity"),
-    Signal("resistance", "sum", "N s/m", "0.0", "slope of force and friction over velocity, for stability alone"),
+    Signal("resistance", "sum", "N s/m", "0.0", "slope of force and friction over velocity, only for stability"),
     Signal("added_mass", "sum", "kg", "0.0", "moves with the piston"),
     Signal("friction_scale", "product", "1", "1.0", "multiplies Coulomb and static friction"),
     Signal("friction_rise", "sum", "N", "0.0", "added to Coulomb and static friction"),
     Signal("static_rise", "sum", "N", "0.0", "added to static friction alone"),
     Signal("static_level", "single", "N", "0.0", "force at which a piston at rest breaks away, here and now"),
-    Signal("slip", "single", "m/s", "v", "velocity as the Stribeck curve sees it"),
+    Signal("slip", "single", "m/s", "v", "velocity in the Stribeck curve"),
     Signal(
         "stribeck",
         "single",
@@ -66,9 +66,9 @@ _TABLE = (
         "Stribeck decay",
     ),
     # sensors
-    Signal("y_measured", "single", "m", "y", "what the position sensor reads"),
-    Signal("p_a_measured", "single", "Pa", "p_a", "what the pressure sensor of chamber a reads"),
-    Signal("p_b_measured", "single", "Pa", "p_b", "what the pressure sensor of chamber b reads"),
+    Signal("y_measured", "single", "m", "y", "reading of the position sensor"),
+    Signal("p_a_measured", "single", "Pa", "p_a", "reading of the pressure sensor of chamber a"),
+    Signal("p_b_measured", "single", "Pa", "p_b", "reading of the pressure sensor of chamber b"),
 )
 
 SIGNALS: dict[str, Signal] = {signal.name: signal for signal in _TABLE}

@@ -1,4 +1,4 @@
-"""Turn the functions of effects, and all they call, into text that stands alone in one generated module.
+"""Copy the functions of effects, and all they call, into the text of one self-contained module.
 
 Numba's cache does not see edits in another file; therefore everything a kernel runs is copied into its text, whose hash
 names the kernel.
@@ -26,7 +26,7 @@ _MODULES = {math: "math", np: "np"}
 
 
 class SourceBook:
-    """Collects functions in the order in which they must be defined, each under a name of its own."""
+    """Collects functions in the order in which they must be defined, each under a unique name."""
 
     def __init__(self) -> None:
         self.texts: list[str] = []
@@ -36,7 +36,7 @@ class SourceBook:
         self._open: list[Callable[..., Any]] = []  # helpers being written
 
     def add(self, function: Function, name: str, title: str) -> str:
-        """Add an effect's function under `name`; `title` is what error messages call it."""
+        """Add an effect's function under `name`; `title` is its name in error messages."""
         if function.tree not in self._written:
             self._written[function.tree] = self._define(function.tree, function.globals, name, title)
         return self._written[function.tree]

@@ -1,4 +1,4 @@
-"""Stepping a plant that runs on: for nodes and closed loops, where parameters and effects may change while it runs."""
+"""A plant stepped sample by sample, for nodes and closed loops: parameters and effects may change while it runs."""
 
 import math
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 class Stepper:
     """A model, its present state and time. A step takes little longer than its kernel.
 
-    A sample has `parts` integration steps of `step` [s]; the voltage may change from one of them to the next.
+    A sample has `parts` integration steps of `step` [s]; the voltage may change from step to step.
     """
 
     def __init__(self, model: Model, state: Array, *, sample_time: float = 1e-3, step: float = STEP) -> None:
@@ -42,7 +42,7 @@ class Stepper:
     def advance(self, voltage: float) -> Array:
         """Hold `voltage` [V] for one sample; returns the state (states,), a view that the next call overwrites.
 
-        Raises NumericalError when the state leaves the finite numbers; the stepper then still holds the last good one.
+        Raises NumericalError when the state leaves the finite numbers; the stepper then keeps the last finite state.
         UsageError for a voltage that is no finite number.
         """
         if not math.isfinite(voltage):
@@ -55,10 +55,10 @@ class Stepper:
         return self._sample(voltages, 1, self.parts)
 
     def _sample(self, voltages: Array, stride: int, every: int) -> Array:
-        """Hold each voltage for `stride` steps; `every` of them make the sample."""
+        """Hold each voltage for `stride` steps; `every` voltages make the sample."""
         before = self.state.copy()
         self._run(self.state, self._values, voltages, self.time, self.step, stride, every, self._out)
-        if not math.isfinite(self.state.sum()):  # of finite numbers of a machine's size a sum is finite
+        if not math.isfinite(self.state.sum()):  # finite states of a machine have a finite sum
             self.state[:] = before
             raise NumericalError(f"the state left the finite numbers at t = {self.time:.3f} s")
         self.samples += 1

@@ -29,7 +29,7 @@ def is_velocity(s: str, resolver: "Resolver") -> bool:
 
 
 def kick(velocities: list[str], rates: list[str]) -> list[str]:
-    """Lines that take the whole step of velocities, and their means to mid step."""
+    """Lines of the whole step of velocities, and of their means over the step."""
     lines = [whole_step(s, rates, "damped") for s in velocities]
     return lines + [f"{s}_m = 0.5 * ({s} + {s}_n)" for s in velocities]
 

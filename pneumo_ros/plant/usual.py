@@ -1,17 +1,17 @@
-"""How large a parameter usually is, where its value says nothing because it is 0 or switches the effect off."""
+"""The usual size of a parameter whose value does not show it, because it is 0 or switches the effect off."""
 
 import math
 
 from pneumo_ros.plant.effect import Effect
 
-RANGE_SHARE = 0.1  # of the allowed range: usual where nothing else says more
+RANGE_SHARE = 0.1  # of the allowed range: the usual size where no default gives one
 
 
 def usual_size(effect: type[Effect], key: str) -> float:
-    """How far a parameter of `effect` usually is from its neutral value (from 0, if it has none), in its unit.
+    """Usual distance of a parameter of `effect` from its neutral value (from 0, if it has none), in its unit.
 
-    That of its default; where the default does nothing, the largest of the effect's sizes in the same unit, or a tenth
-    of the allowed range (1 where that has no end). Always above 0.
+    The distance of its default; where that is 0, the largest of the effect's parameters in the same unit, or a tenth
+    of the allowed range (1 if that is infinite). Always above 0.
     """
     own = effect.parameters[key]
     size = abs(own.default - (own.neutral or 0.0))

@@ -51,11 +51,11 @@ BAD = {  # fault: file, text of the error
     ),
     "an effect without the one it works beside, nor its section": (
         CHOKED_ALONE,
-        r"choked_flow works only beside effect arctan_flow, of which it reads filling_coefficient; add arctan_flow to",
+        r"choked_flow needs effect arctan_flow \(it reads filling_coefficient\); add arctan_flow to",
     ),
     "an effect without the section it reads": (
         "/**:\n  ros__parameters:\n    effects: [arctan_flow]\n    piston: {mass: 5.0}\n",
-        r"arctan_flow needs section 'chambers', of which it reads p_a; add section 'chambers' with volume_a, volume_b",
+        r"arctan_flow needs section 'chambers' \(it reads p_a\); add section 'chambers' with volume_a, volume_b",
     ),
     "out of range": (TEXT.replace("mass: 5.0", "mass: -5.0"), r"piston.mass is -5.0 kg; allowed is 0.01 to 10000"),
     "not a number": (TEXT.replace("mass: 5.0", "mass: .nan"), r"piston.mass is nan kg"),

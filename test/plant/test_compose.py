@@ -70,7 +70,7 @@ def test_two_sources_of_a_single_signal_are_refused(tmp_path: Path) -> None:
 
 def test_signals_that_wait_for_each_other_are_named(tmp_path: Path) -> None:
     body = one("friction", "friction_scale = 1.0 + 0.0 * friction", "return friction_scale")
-    with pytest.raises(UsageError, match=r"wait for each other: .*friction_scale.*friction"):
+    with pytest.raises(UsageError, match=r"depend on each other: .*friction_scale.*friction"):
         composed(tmp_path, body, "own")
 
 
@@ -94,7 +94,7 @@ MISFITS = {
     ),
     "state like a name of the step": (
         one("v", "der_y_m = v", "return der_y_m", more=STATE.format(name="y_m")),
-        r"y_m of effect own is too like",
+        r"y_m of effect own is too similar to",
     ),
     "parameter like a state": (
         one("y", "force = y", "return force", more='    y = Parameter(1.0, "m", "a length")\n'),

@@ -138,7 +138,7 @@ def test_one_sample_and_no_lanes_are_allowed() -> None:
         ({"rest": [[0.0]]}, r"rest \(1, 1\)"),
         ({"parameters": np.zeros((2, 3))}, r"parameters \(2, 3\)"),
         ({"parameters": AXIS.values}, r"parameters \(\d+,\)"),
-        ({"voltage": np.zeros(298)}, r"298 voltages do not reach over 151 samples"),
+        ({"voltage": np.zeros(298)}, r"298 voltages do not cover 151 samples"),
         ({"voltage": np.zeros(301)}, r"301 voltages do not fill whole samples of 2"),
         ({"columns": ["p_c"]}, r"unknown state 'p_c'"),
         ({"states": ["zz"]}, r"unknown state 'zz'"),

@@ -183,5 +183,5 @@ def test_outputs_take_one_voltage_for_all_and_refuse_too_few(axis: Model) -> Non
     x = axis.simulate(VOLTAGE, axis.state())
     one, all_of_them = axis.outputs(x, 2.0), axis.outputs(x, np.full(len(x), 2.0))
     assert all(np.array_equal(one[name], all_of_them[name]) for name in one)
-    with pytest.raises(UsageError, match="2 voltages do not reach over"):
+    with pytest.raises(UsageError, match="2 voltages do not cover"):
         axis.outputs(x, [1.0, 2.0])

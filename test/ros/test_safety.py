@@ -93,7 +93,7 @@ def test_a_stream_that_breaks_off_ends_at_its_last_position(rig: Rig) -> None:
         one.command_joints(["piston"], [last], [side * 0.08])
         time.sleep(0.01)
     one.arrives(last, 5e-3)
-    assert "the last position stands" in one.health(f"{PLACE}/controller")[1]["reason"]
+    assert "the last position is held" in one.health(f"{PLACE}/controller")[1]["reason"]
 
 
 def test_a_simulator_that_is_killed_and_started_again(rig: Rig) -> None:

@@ -1,4 +1,4 @@
-"""Wanted motion made of what comes in: profiles to a position, trajectories, streams; and whether it is possible."""
+"""Wanted motion from requests: profiles to a position, trajectories, streams; and whether it is possible."""
 
 from pneumo_ros.control.motion.capability import Capability
 from pneumo_ros.control.motion.feasible import require, slowed

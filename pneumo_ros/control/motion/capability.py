@@ -1,4 +1,4 @@
-"""What the supply pressure can do: the force left at a speed, the speed left without one."""
+"""Limits that the supply pressure sets: the largest force at a speed, and the largest speed."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,12 +12,12 @@ from pneumo_ros.control.valve import ValveInverse
 
 Array = NDArray[np.float64]
 BISECTIONS = 40
-TINY = 1e-9  # m/s, and the room that is left at a speed at which a chamber cannot empty any more
+TINY = 1e-9  # m/s; also the least divisor, at a speed at which a chamber cannot empty
 
 
 @dataclass(frozen=True)
 class Capability:
-    """Largest forces of a machine behind a fully open valve, quasi-steady: pressures as if the speed had lasted.
+    """Largest forces of a machine with a fully open valve, quasi-steady: pressures as at a constant speed.
 
     At a steady speed v the filling chamber takes A v p = c (p_s - p), the other gives A v p = d (p - p_atm), with the
     flows c = beta_fill R T atan(k_u u) and d likewise [m3/s] (plant: `arctan_flow` and `chambers` with p' = 0). The
@@ -27,7 +27,7 @@ class Capability:
 
     machine: Machine
     valve: ValveInverse
-    supply_pressure: float | None = None  # [Pa abs] as measured; None: what the machine file says
+    supply_pressure: float | None = None  # [Pa abs] as measured; None: that of the machine file
 
     @property
     def supply(self) -> float:
@@ -50,7 +50,7 @@ class Capability:
         return np.asarray(m.coulomb_friction + (m.viscous_friction + m.drag * v) * v + side * m.load)
 
     def top_speed(self, side: float) -> float:
-        """Largest steady speed [m/s] to `side`; 0 where the piston does not move at all."""
+        """Largest steady speed [m/s] to `side`; 0 if the piston cannot move."""
         slow, fast = 0.0, 100.0
         for _ in range(BISECTIONS):
             middle = 0.5 * (slow + fast)
@@ -61,10 +61,10 @@ class Capability:
         return slow
 
     def shortfall(self, velocity: ArrayLike, acceleration: ArrayLike) -> Array:
-        """Force [N] that motions [m/s, m/s2] need beyond what there is; negative where some is left.
+        """Force [N] that motions [m/s, m/s2] need beyond the available force; negative where force is left.
 
-        While braking hard, the pressures push against the motion: then the force at rest is what there is. At rest
-        a start to one side cannot be distinguished from the end of a motion to the other: the easier one counts.
+        While braking hard, the pressures push against the motion: the force at rest is then available. At rest a start
+        to one side cannot be distinguished from the end of a motion to the other: the easier one counts.
         """
         v, a = np.broadcast_arrays(np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float))
         extending = self._lacking(np.maximum(v, 0.0), a, 1.0)
@@ -87,7 +87,7 @@ class Capability:
     def fit(self, limits: Limits, share: float = 0.95) -> Limits:
         """`limits`, with speed and acceleration no larger than `share` of what the machine reaches both ways.
 
-        As they are for a machine that does not move at all: there is nothing to fit them to.
+        Unchanged for a machine that cannot move: there is nothing to fit them to.
         """
         speed = min(limits.speed, share * self.top_speed(1.0), share * self.top_speed(-1.0))
         left = min(float(self.force(speed, side) - self.resistance(speed, side)) for side in (1.0, -1.0))

@@ -1,4 +1,4 @@
-"""Whether a trajectory can be followed, said with numbers; and how much slower it would have to be."""
+"""Whether a trajectory can be followed, with numbers; and how much slower it would have to be."""
 
 import math
 from collections.abc import Sequence
@@ -13,16 +13,16 @@ from pneumo_ros.control.motion.waypoint import Waypoint
 from pneumo_ros.control.setpoint import Setpoint
 from pneumo_ros.errors import UsageError
 
-GRID = np.linspace(0.0, 1.0, 65)  # places looked at on each piece, beside its turning points
-SLOWEST = 100.0  # what would have to be slower than that is refused
-FINER = 1.2  # between two factors that are tried
+GRID = np.linspace(0.0, 1.0, 65)  # places checked on each piece, beside its turning points
+SLOWEST = 100.0  # largest factor on times; a trajectory that needs more is refused
+FINER = 1.2  # ratio of two factors that are tried
 BISECTIONS = 16  # of the factor, to a part in 1e4
 Array = NDArray[np.float64]
 
 
 def require(trajectory: Trajectory, limits: Limits, capability: Capability) -> None:
     """Raise UsageError, with the worst place in numbers, unless `trajectory` stays within the positions of `limits`
-    and needs no more speed and force than there is.
+    and needs no more speed and force than the machine has.
     """
     time, position, velocity, acceleration = _places(trajectory)
     outside = abs(position - position.clip(limits.low, limits.high))
@@ -44,7 +44,7 @@ def require(trajectory: Trajectory, limits: Limits, capability: Capability) -> N
 def slowed(
     start: Setpoint, begin: float, waypoints: Sequence[Waypoint], limits: Limits, capability: Capability
 ) -> tuple[Trajectory, float]:
-    """The trajectory through `waypoints`, as much slower as it must be, and the factor on its times, 1 or more.
+    """The trajectory through `waypoints`, slowed as far as necessary, and the factor on its times, 1 or more.
 
     Raises UsageError as `require` does where slowing does not help, as with positions outside the limits.
     """
@@ -55,12 +55,12 @@ def slowed(
     while not _fits(found := _stretched(start, begin, waypoints, factor), limits, capability):
         factor *= FINER
         if factor > SLOWEST:
-            require(wanted, limits, capability)  # which says what is wrong with it
+            require(wanted, limits, capability)  # raises with the reason
     return found, factor
 
 
 def _factor(wanted: Trajectory, capability: Capability) -> float:
-    """The factor on times that leaves enough force for a trajectory from rest; from a motion it may take more."""
+    """The factor on times that leaves enough force if the trajectory starts at rest; else it may need more."""
     _, _, velocity, acceleration = _places(wanted)
     quick, slow = 1.0, SLOWEST
     for _ in range(BISECTIONS):
@@ -122,4 +122,4 @@ def _beyond(velocity: float, acceleration: float, lacking: float, capability: Ca
     at = f"at a supply pressure of {capability.supply:.3g} Pa"
     if abs(velocity) > top:
         return f"wants {velocity:.3g} m/s; the piston reaches {side * top:.3g} m/s {at}"
-    return f"wants {acceleration:.3g} m/s2 at {velocity:.3g} m/s, {lacking:.3g} N more than there is {at}"
+    return f"wants {acceleration:.3g} m/s2 at {velocity:.3g} m/s, {lacking:.3g} N more than is available {at}"

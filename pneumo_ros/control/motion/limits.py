@@ -25,7 +25,7 @@ class Limits:
             if not (math.isfinite(value) and value > 0.0):
                 raise UsageError(f"limit of {name} is {value!r}; it takes a positive number")
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
-            raise UsageError(f"limits of position are {self.low!r} to {self.high!r} m; the first must be the lesser")
+            raise UsageError(f"limits of position are {self.low!r} to {self.high!r} m; the first must be smaller")
 
     def on_stroke(self, stroke: float) -> "Limits":
         """The same within +-`stroke` / 2 [m]."""

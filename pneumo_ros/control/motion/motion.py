@@ -1,4 +1,4 @@
-"""The wanted motion: one setpoint for every instant, made of the targets, streams and trajectories that come in."""
+"""The wanted motion: one setpoint for every instant, from the targets, streams and trajectories that come in."""
 
 from enum import Enum
 
@@ -9,7 +9,7 @@ from pneumo_ros.control.setpoint import Reference, Setpoint
 
 
 class Kind(Enum):
-    """What the motion is made of."""
+    """The source of the motion."""
 
     NONE = "no reference"
     TARGET = "target"
@@ -19,18 +19,18 @@ class Kind(Enum):
 
 
 class Motion:
-    """Where the piston is to be. Nothing that comes in makes the setpoint jump, and it never runs away from the piston.
+    """The wanted position of the piston. No request makes the setpoint jump, and it never runs away from the piston.
 
-    Times [s] rise from call to call; `measured` [m] is where the piston is. A motion that is `following_error` [m]
-    ahead of the piston restarts from there, a trajectory is given up; `reason` then says why. The last position of a
-    stream stands when nothing came for `pause` [s].
+    Times [s] rise from call to call; `measured` [m] is the piston's position. A motion that is `following_error` [m]
+    away from the piston restarts at the piston, a trajectory is given up; `reason` then says why. A stream ends at its
+    last position when nothing came for `pause` [s].
     """
 
     def __init__(self, limits: Limits, following_error: float = 0.05, pause: float = 0.2) -> None:
         self.limits, self.following_error, self.pause = limits, following_error, pause
         self.kind, self.reason = Kind.NONE, ""
         self.reference: Reference = _nothing
-        self.target: float | None = None  # where it ends, or what was last asked for [m]
+        self.target: float | None = None  # end of the motion, or the last request [m]
         self.trajectory: Trajectory | None = None
         self._asked, self._drift = 0.0, 0.0
 
@@ -39,7 +39,7 @@ class Motion:
         if self.kind is Kind.NONE:
             return None
         if self._drift and time - self._asked > self.pause:
-            self.reason = f"nothing came for {self.pause:g} s, and the last position stands"
+            self.reason = f"nothing came for {self.pause:g} s; the last position is held"
             self._go(self._within(self.reference(time)), time)
         wanted = self._within(self.reference(time))
         if self.kind is not Kind.FREE and abs(wanted.position - measured) > self.following_error:
@@ -55,9 +55,9 @@ class Motion:
     # --- what comes in ----------------------------------------------------------------------------------------------
 
     def aim(self, position: float, velocity: float | None, time: float, measured: float) -> None:
-        """Go to `position` [m], which itself moves at `velocity` [m/s]; None: as the earlier request says.
+        """Go to `position` [m], which itself moves at `velocity` [m/s]; None: computed from the earlier request.
 
-        Raises UsageError, and goes on as before, for a position that is not finite or outside the limits.
+        Raises UsageError, and continues as before, for a position that is not finite or outside the limits.
         """
         self.limits.require(position)
         drift = self._rate(position, time) if velocity is None else velocity
@@ -77,7 +77,7 @@ class Motion:
         return Setpoint(measured) if self.kind is Kind.NONE else self._within(self.reference(begin))
 
     def follow(self, trajectory: Trajectory, measured: float) -> None:
-        """Follow a trajectory from `start_of` its begin, until then what was followed before."""
+        """Follow a trajectory from `start_of` its begin; until then the earlier reference goes on."""
         before = (lambda time: Setpoint(measured)) if self.kind is Kind.NONE else self.reference
         self.reference = lambda time: trajectory(time) if time >= trajectory.begin else before(time)
         self.kind, self.target, self._drift, self.reason = Kind.TRAJECTORY, trajectory.goal, 0.0, ""
@@ -107,14 +107,14 @@ class Motion:
             self._go(Setpoint(measured), time)
 
     def change_limits(self, limits: Limits, time: float) -> None:
-        """Go on within other limits; a target outside of them becomes the nearest one inside."""
+        """Continue within other limits; a target outside of them becomes the nearest one inside."""
         self.limits = limits
         if self.kind in (Kind.TARGET, Kind.STREAM) and self.target is not None:
             self.target = limits.clip(self.target)
             self._go(self.reference(time), time)
 
     def follows(self, trajectory: Trajectory) -> bool:
-        """Whether `trajectory` is what is followed, and not over because of something else."""
+        """Whether `trajectory` is being followed: nothing else has replaced it."""
         return self.kind is Kind.TRAJECTORY and self.trajectory is trajectory
 
     # --- how --------------------------------------------------------------------------------------------------------
@@ -125,7 +125,7 @@ class Motion:
         self.reference = Profile(now, time, self.target, self.limits, drift)
 
     def _rate(self, position: float, time: float) -> float:
-        """Velocity [m/s] of a stream of positions, 0 for one that comes alone or jumps."""
+        """Velocity [m/s] of a stream of positions, 0 for a single position or a jump."""
         passed = time - self._asked
         if self.target is None or not 0.0 < passed <= self.pause or self.kind is Kind.TRAJECTORY:
             return 0.0
@@ -133,7 +133,7 @@ class Motion:
         return rate if abs(rate) <= self.limits.speed else 0.0
 
     def _smooth(self, now: Setpoint, position: float, velocity: float, passed: float) -> bool:
-        """Whether a stream goes on from the setpoint, but for what acceleration does between two of its messages."""
+        """Whether a stream continues from the setpoint, within the acceleration possible between two messages."""
         most = 2.0 * self.limits.acceleration * passed
         return (
             0.0 < passed <= self.pause
@@ -142,7 +142,7 @@ class Motion:
         )
 
     def _within(self, wanted: Setpoint) -> Setpoint:
-        """A stream that is drawn out stays within the limits, too."""
+        """An extrapolated stream also stays within the limits."""
         inside = self.limits.clip(wanted.position)
         return wanted if self.kind is not Kind.STREAM or inside == wanted.position else Setpoint(inside)
 

@@ -1,4 +1,4 @@
-"""Motion of piecewise constant jerk: how it is described, and where it is at a given time."""
+"""Motion of piecewise constant jerk: its phases, and the setpoint at a given time."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -14,14 +14,14 @@ class Phase(NamedTuple):
 
 
 def moved(start: Setpoint, jerk: float, time: float) -> Setpoint:
-    """Where `time` [s] of constant `jerk` [m/s3] leads from `start`."""
+    """The setpoint after `time` [s] of constant `jerk` [m/s3] from `start`."""
     position = start.position + time * (start.velocity + time * (start.acceleration / 2.0 + time * jerk / 6.0))
     velocity = start.velocity + time * (start.acceleration + time * jerk / 2.0)
     return Setpoint(position, velocity, start.acceleration + time * jerk, jerk)
 
 
 def end(start: Setpoint, phases: Iterable[Phase]) -> Setpoint:
-    """Where all `phases`, one after the other, lead from `start`."""
+    """The setpoint after all `phases`, one after the other, from `start`."""
     for phase in phases:
         start = moved(start, phase.jerk, phase.duration)
     return start
@@ -30,9 +30,9 @@ def end(start: Setpoint, phases: Iterable[Phase]) -> Setpoint:
 def velocity_change(start: Setpoint, velocity: float, acceleration: float, jerk: float) -> tuple[Phase, ...]:
     """Quickest way from the velocity and acceleration of `start` to a steady `velocity` [m/s], within limits.
 
-    Jerk, none, jerk the other way: Lambrechts, Boerlage and Steinbuch, Control Engineering Practice 13 (2005) 145-157,
-    sec. 2, from any initial acceleration. The velocity v0 + a0 |a0| / 2j, at which an acceleration that is ended at
-    once leaves the piston, shows which way to push. An initial acceleration beyond the limit is brought back to it.
+    Jerk, none, opposite jerk: Lambrechts, Boerlage and Steinbuch, Control Engineering Practice 13 (2005) 145-157,
+    sec. 2, from any initial acceleration. The velocity v0 + a0 |a0| / 2j, reached if the acceleration is ended at once,
+    decides the direction of the push. An initial acceleration beyond the limit is brought back to it.
     """
     a0 = start.acceleration
     side = 1.0 if velocity >= start.velocity + a0 * abs(a0) / (2.0 * jerk) else -1.0

@@ -12,7 +12,7 @@ class Polynomial:
         self.coefficients = (*coefficients, *(0.0,) * (6 - len(coefficients)))
 
     def __call__(self, time: float) -> Setpoint:
-        """The setpoint at `time` [s], beyond the ends, too."""
+        """The setpoint at `time` [s], also beyond the ends."""
         t = time - self.begin
         c0, c1, c2, c3, c4, c5 = self.coefficients
         return Setpoint(

@@ -5,15 +5,15 @@ from pneumo_ros.control.motion.phases import Phase, end, moved, velocity_change
 from pneumo_ros.control.setpoint import Setpoint
 
 BISECTIONS = 40  # of the cruising speed: to a part in 1e12
-RESERVE = 0.95  # largest share of the limit of speed that a moving target may use up
+RESERVE = 0.95  # largest share of the speed limit that a moving target may use
 
 
 class Profile:
     """Reference that leads from `start` at time `begin` [s] to `target` [m] within `limits`, and stays there.
 
     The velocity changes to a cruising speed, is kept, and changes to that of the target, each change as in
-    `velocity_change`. Seen from a target that moves at `drift` [m/s], the piston comes to rest: the same with other
-    limits of speed. Where the start leaves no other way, the profile passes the target and comes back.
+    `velocity_change`. For a target that moves at `drift` [m/s] the same is computed relative to it, with other limits
+    of speed. If the start leaves no other way, the profile passes the target and comes back.
     """
 
     def __init__(self, start: Setpoint, begin: float, target: float, limits: Limits, drift: float = 0.0) -> None:
@@ -51,7 +51,7 @@ class Profile:
         return self._both(seen, self._cruise(seen, distance, fastest))
 
     def _cruise(self, seen: Setpoint, distance: float, fastest: float) -> float:
-        """The cruising speed that leads exactly as far as wanted."""
+        """The cruising speed that leads exactly to the wanted distance."""
         side = 1.0 if fastest > 0.0 else -1.0
         near, far = 0.0, fastest
         kept = seen.velocity
@@ -73,6 +73,6 @@ class Profile:
 
 
 def braking(start: Setpoint, begin: float, limits: Limits) -> Profile:
-    """The quickest way to rest within `limits`, and the place where it leads."""
+    """The quickest way to rest within `limits`, as a profile to its end."""
     phases = velocity_change(start, 0.0, limits.acceleration, limits.jerk)
     return Profile(start, begin, end(start, phases).position, limits)

@@ -16,7 +16,7 @@ class Trajectory:
     """Reference through `waypoints`, from `start` at time `begin` [s], at rest at the last one afterwards.
 
     Between two points the motion is quintic where both have velocity and acceleration, cubic where both have a
-    velocity, linear otherwise; the start has both, but does not make a first point quintic that gives none.
+    velocity, linear otherwise; the start always has both.
     """
 
     def __init__(self, start: Setpoint, begin: float, waypoints: Sequence[Waypoint]) -> None:
@@ -26,7 +26,7 @@ class Trajectory:
         if waypoints[0].time == 0.0 and abs(away) > NEAR:
             raise UsageError(
                 f"the trajectory begins at {waypoints[0].position:.4g} m, {abs(away):.3g} m away from the piston; "
-                f"allowed is {NEAR:g} m, or give the first point the time to get there"
+                f"allowed is {NEAR:g} m; move the first point or give it a later time"
             )
         later = [point for point in waypoints if point.time > 0.0]
         self.begin = begin

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-MARGIN = 1.05  # over the atmosphere's pressure: what counts as empty
+MARGIN = 1.05  # times the atmosphere's pressure: a chamber below it counts as empty
 PERIOD = 1.0  # s, of opening one side and then the other
 SHARE = 0.5  # of the largest voltage; both edges are then nearly fully open
 LONGEST = 20.0  # s
@@ -10,7 +10,7 @@ LONGEST = 20.0  # s
 
 class Vent:
     """With the supply shut off, a closed-centre 5/3 valve opened either way empties both chambers: one through its
-    exhaust edge, the other back into the dead supply line or, where that is blocked, half a period later.
+    exhaust edge, the other back into the shut supply line or, where that is blocked, half a period later.
 
     Done when both pressures are within 5 % of the atmosphere's; without pressures, and at the latest, after 20 s.
     """

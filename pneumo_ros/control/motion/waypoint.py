@@ -1,4 +1,4 @@
-"""The points of a trajectory, and what makes a list of them none."""
+"""The points of a trajectory, and the check of a list of them."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from pneumo_ros.errors import UsageError
 
 
 class Waypoint(NamedTuple):
-    """Where to be `time` [s] after the start: position [m], and where wanted velocity [m/s], acceleration [m/s2]."""
+    """Position [m] at `time` [s] after the start; velocity [m/s] and acceleration [m/s2] if they are wanted."""
 
     time: float
     position: float
@@ -44,5 +44,5 @@ def ahead(waypoints: Sequence[Waypoint], passed: float) -> list[Waypoint]:
     """The points later than `passed` [s], on a clock that starts there; UsageError if all of them are over."""
     later = [point._replace(time=point.time - passed) for point in waypoints if point.time > passed]
     if waypoints and not later:
-        raise UsageError(f"the trajectory was over {passed - waypoints[-1].time:.3g} s ago")
+        raise UsageError(f"the trajectory ended {passed - waypoints[-1].time:.3g} s ago")
     return later

@@ -4,9 +4,9 @@ from pneumo_ros.plant.effect import Effect, Parameter
 
 
 class Cushioning(Effect):
-    """Near an end the air leaves through a throttle alone: outflow of the shrinking chamber falls to what remains.
+    """Near an end the air leaves only through a throttle: a share of the outflow of the shrinking chamber remains.
 
-    The cushion closes over the first fifth of its length; what flows in passes its check valve.
+    The cushion closes over the first fifth of its length; inflow passes its check valve.
     """
 
     remaining = Parameter(0.05, "1", "share of the exhaust conductance that the cushion leaves", 1e-4, 1.0, neutral=1.0)

@@ -1,10 +1,10 @@
-"""Volume the model does not know of."""
+"""Volume that the model lacks."""
 
 from pneumo_ros.plant.effect import Effect, Parameter
 
 
 class DeadVolume(Effect):
-    """Additional volume of each chamber: fittings, hoses, ports. What is taken away leaves a tenth of what is known."""
+    """Additional volume of each chamber: fittings, hoses, ports. If negative, a tenth of the known volume is kept."""
 
     volume_added_a = Parameter(3e-5, "m3", "volume added to chamber a", low=-1e-3, high=0.1, neutral=0.0)
     volume_added_b = Parameter(3e-5, "m3", "volume added to chamber b", low=-1e-3, high=0.1, neutral=0.0)

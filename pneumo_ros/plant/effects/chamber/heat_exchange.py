@@ -19,11 +19,11 @@ def exchange(
 
 
 class HeatExchange(Effect):
-    """Full balance of energy: the gas has a temperature T_g = T + theta of its own, which the wall takes back to T.
+    """Full balance of energy: the gas has its own temperature T_g = T + theta, which the wall brings back to T.
 
     With m = p V / (R T_g), Q = -m c_v theta / tau from the wall and gas that enters at T and leaves at T_g,
-    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). A share s of what gas and piston bring in
-    may go into the wall at once: with s alone the gas is polytropic, of the exponent n = gamma - s (gamma - 1).
+    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). A share s of the energy of gas and piston
+    may go into the wall at once: with s alone the gas is polytropic with the exponent n = gamma - s (gamma - 1).
     """
 
     rate = Parameter(4.0, "1/s", "rate 1/tau at which the gas takes the wall's temperature", 0.0, 1e3, neutral=0.0)

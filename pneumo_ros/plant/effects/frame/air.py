@@ -1,4 +1,4 @@
-"""The gas, and the pressures it comes from and goes to."""
+"""The gas, its supply and the atmosphere."""
 
 from pneumo_ros.plant.effect import Effect, Parameter
 

@@ -2,15 +2,15 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-RESOLVED = 2e-4  # s: shorter lags are a share of this one, which has the same delay and needs no shorter steps
+RESOLVED = 2e-4  # s: shorter lags use a share of this one, which has the same delay without shorter steps
 
 
 class FrictionLag(Effect):
-    """The lubricant film follows velocity with a time constant: the Stribeck curve sees v_f, v_f' = (v - v_f) / tau."""
+    """The lubricant film lags velocity: the Stribeck curve depends on v_f, v_f' = (v - v_f) / tau."""
 
     time_constant = Parameter(5e-3, "s", "time constant tau of the film", low=0.0, high=1.0, neutral=0.0)
 
-    v_f = State("m/s", "velocity as the film sees it", initial="v")
+    v_f = State("m/s", "lagged velocity of the film", initial="v")
 
     source = (
         "Hess and Soom 1990, Friction at a lubricated line contact operating at oscillating sliding velocities; "

@@ -7,8 +7,8 @@ class LugreFriction(Effect):
     """Elasto-plastic LuGre friction, Eqs. 10-14: F = sigma_0 z + sigma_1 z', z' = v - alpha(z, v) sigma_0 |v| z / g(v).
 
     Below the breakaway deflection z_ba = breakaway_ratio z_max, z_max = g(v) / sigma_0, the contact is purely elastic
-    (alpha = 0), hence no creep under small vibrating loads. The plastic term is linear in z, so it is returned as a
-    rate as well: the integrator takes it exactly at any speed.
+    (alpha = 0), hence no creep under small vibrating loads. The plastic term is linear in z, so it is also returned as
+    a rate: the integrator solves it exactly at any speed.
     """
 
     static_friction = Parameter(100.0, "N", "static friction force F_s", low=0.0, high=1e5)
@@ -53,7 +53,7 @@ class LugreFriction(Effect):
         v, z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness,
     ):  # fmt: skip
         # |z| <= F_s / sigma_0 is an invariant of the exact equation; one step at high speed may overshoot it. A bristle
-        # that unloads keeps what it has, though the level may just have fallen (asymmetric friction at a reversal)
+        # that unloads keeps its deflection, though the level may have fallen (asymmetric friction at a reversal)
         level = friction_scale * max(static_friction, coulomb_friction) + friction_rise + max(static_rise, 0.0)
         limit = level / bristle_stiffness if v * z >= 0.0 else abs(z)
         z = min(max(z, -limit), limit)

@@ -9,7 +9,7 @@ class QuadraticDrag(Effect):
     coefficient = Parameter(4546.7, "N s2/m2", "drag coefficient C_d", low=0.0, high=1e7, neutral=0.0)
 
     source = "paper Eq. 10"
-    signature = "residual force grows with the square of velocity, odd"
+    signature = "residual force grows with the square of velocity and changes sign with it"
 
     def equations(v, coefficient):
         resistance = coefficient * abs(v)

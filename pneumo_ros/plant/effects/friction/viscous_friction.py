@@ -9,7 +9,7 @@ class ViscousFriction(Effect):
     coefficient = Parameter(30.0, "N s/m", "viscous friction coefficient sigma_2", low=0.0, high=1e6, neutral=0.0)
 
     source = "Canudas de Wit et al. 1995, Eq. 3"
-    signature = "residual force in proportion to velocity, odd"
+    signature = "residual force in proportion to velocity"
 
     def equations(v, coefficient):
         friction = coefficient * v

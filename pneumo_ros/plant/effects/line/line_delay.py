@@ -2,17 +2,17 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State, exp
 
-RESOLVED = 2e-3  # s: shorter delays are a share of this one, which is alike and needs no shorter steps
+RESOLVED = 2e-3  # s: shorter delays use a share of this one, which is nearly equal without shorter steps
 # Pade approximant of exp(-s), numerator 1 - s / 4, denominator (1 + s / P) (1 + (D s + s^2) / C)
 P, C, D = 2.6258168189584645, 9.140013052974366, 3.374183181041531
 
 
 class LineDelay(Effect):
-    """Flow arrives late through the tubes and, by their friction, less: q(t) = exp(-p_l / p) q_valve(t - tau).
+    """The tubes delay the flow, and their friction reduces it: q(t) = exp(-p_l / p) q_valve(t - tau).
 
     tau is the length of a tube over the speed of sound, about 3 ms/m; p_l = R_t R T tau / 2 with the tube's resistance
-    per length and area R_t, 32 mu / D^2 if laminar. The delay is its (1, 3) Pade approximation: no jump goes through,
-    all that enters leaves, and the mean delay is exact.
+    per length and area R_t, 32 mu / D^2 if laminar. The delay is its (1, 3) Pade approximation, which passes no jump,
+    conserves mass and has the exact mean delay.
     """
 
     delay = Parameter(6e-3, "s", "delay tau of either line", low=0.0, high=0.2, neutral=0.0)
@@ -26,7 +26,7 @@ class LineDelay(Effect):
     line_b_3 = State("kg/s", "its change within the delay")
 
     source = "Richer and Hurmuzlu 2000, A high performance pneumatic force actuator system, Part I (connecting tubes)"
-    signature = "flow is a delayed copy of what the valve gives"
+    signature = "flow is a delayed copy of the valve's flow"
 
     def equations(
         valve_flow_a, valve_flow_b, p_a, p_b, p_atm, line_a_1, line_a_2, line_a_3, line_b_1, line_b_2, line_b_3,

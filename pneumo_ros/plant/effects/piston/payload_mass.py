@@ -1,4 +1,4 @@
-"""More mass than the model knows."""
+"""Mass that the model lacks."""
 
 from pneumo_ros.plant.effect import Effect, Parameter
 

@@ -4,10 +4,10 @@ from pneumo_ros.plant.effect import Effect, Parameter
 
 
 class SpringLoad(Effect):
-    """Spring between rod and frame, F = k x (1 + p |x| + h x^2) with x = y - y_0, as a hose or a balancing spring.
+    """Spring between rod and frame, F = k x (1 + p |x| + h x^2) with x = y - y_0: a hose or a balancing spring.
 
     Linear with p = h = 0; a coil that closes turn by turn is progressive, a hose that is pulled straight hardens.
-    p |x| + h x^2 stays within -1/2 and 9: no spring changes more.
+    p |x| + h x^2 is limited to -1/2 to 9: no spring changes more.
     """
 
     stiffness = Parameter(100.0, "N/m", "spring stiffness k where it is slack", low=-1e4, high=1e4, neutral=0.0)

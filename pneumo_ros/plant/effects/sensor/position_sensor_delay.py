@@ -2,18 +2,18 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-RESOLVED = 2e-3  # s: shorter delays are a share of this one, which is alike and needs no shorter steps
+RESOLVED = 2e-3  # s: shorter delays use a share of this one, which is nearly equal without shorter steps
 
 
 class PositionSensorDelay(Effect):
-    """The measured position is that of a time tau ago: y_m = y - e, e'' = 12 (v - e / tau) / tau - 6 e' / tau.
+    """The measured position is tau old: y_m = y - e, e'' = 12 (v - e / tau) / tau - 6 e' / tau.
 
-    That is the (2, 2) Pade approximation of the delay, written for what is lacking, so that it starts at rest anywhere.
+    This is the (2, 2) Pade approximation of the delay, written for the lag e, which is 0 at rest at any position.
     """
 
     delay = Parameter(5e-3, "s", "delay tau of the position signal", low=0.0, high=0.2, neutral=0.0)
 
-    behind = State("m", "how far e the signal is behind")
+    behind = State("m", "lag e of the signal")
     v_behind = State("m/s", "rate of change of e")
 
     source = "Golub and Van Loan, Matrix Computations (Pade approximants of the exponential)"

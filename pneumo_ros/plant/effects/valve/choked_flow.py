@@ -4,7 +4,7 @@ from pneumo_ros.plant.effect import Effect, Parameter, atan, pi, sqrt
 
 NORMAL_DENSITY = 1.185  # kg/m3 at 100 kPa and 293.15 K, ISO 6358-1
 NORMAL_TEMPERATURE = 293.15  # K
-LINEAR = 0.999  # pressure ratio above which the law is linear: bent, it would rectify noise into flow
+LINEAR = 0.999  # pressure ratio above which the law is linear: the steep ellipse would turn noise into mean flow
 
 
 def ratio_function(ratio: float, b: float) -> float:
@@ -26,7 +26,7 @@ def edge_flow(p_1: float, p_2: float, conductance: float, b: float, temperature:
 class ChokedFlow(Effect):
     """ISO 6358 flow in place of the linear law: sonic conductance C and critical ratio b at full opening.
 
-    Stands beside `arctan_flow` and replaces its share `blend` of the flow, through the same opening.
+    Needs `arctan_flow` and replaces the share `blend` of its flow, through the same opening.
     """
 
     blend = Parameter(1.0, "1", "share of the flow that follows ISO 6358", low=0.0, high=1.0, neutral=0.0)

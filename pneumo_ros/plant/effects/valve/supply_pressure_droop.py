@@ -1,4 +1,4 @@
-"""A supply that gives way under load."""
+"""A supply pressure that falls when air is drawn."""
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 

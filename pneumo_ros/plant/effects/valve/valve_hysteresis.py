@@ -1,4 +1,4 @@
-"""A spool that sticks to where it was."""
+"""A spool that follows the command with play."""
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
@@ -17,6 +17,6 @@ class ValveHysteresis(Effect):
         voltage = min(max(seen, voltage - half_width), voltage + half_width)
         return voltage
 
-    def advance(voltage):  # the equations have moved it already
+    def advance(voltage):  # the equations have already applied the play
         seen = voltage
         return seen

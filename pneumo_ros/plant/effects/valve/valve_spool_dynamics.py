@@ -1,12 +1,12 @@
-"""A spool that takes its time."""
+"""A spool that lags the command."""
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-FASTEST = 1000.0  # rad/s, of which no recording sees more than a delay: from half of it on the effect fades
+FASTEST = 1000.0  # rad/s, at which a recording shows only a delay: above half of it the effect fades out
 
 
 class ValveSpoolDynamics(Effect):
-    """Spool position of second order behind the command: x'' = omega^2 (u - x) - 2 zeta omega x'."""
+    """Spool position with a second-order lag to the command: x'' = omega^2 (u - x) - 2 zeta omega x'."""
 
     angular_frequency = Parameter(80.0, "rad/s", "natural angular frequency omega", 5.0, FASTEST, neutral=FASTEST)
     damping_ratio = Parameter(0.7, "1", "damping ratio zeta", low=0.2, high=5.0)
