@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.console import Console, table_text
 from pneumo_ros.command.recordings import read_named
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable
@@ -46,16 +46,7 @@ def refitted(
 
 
 def refit_text(refit: dict[str, Any]) -> str:
-    """What the refit changed, a line for each parameter."""
-    rows = [("", "before", "after", "95 % interval", "moved", "unit")]
-    for name, one in refit["parameters"].items():
-        low, high = one["low"], one["high"]
-        interval = "not determined" if not one["determined"] or low is None else f"{low:.5g} to {high:.5g}"
-        note = f"{one['priors_moved']:+.1f} sd" + (" !" if one["moved_beyond_prior"] else "")
-        rows.append((name, f"{one['before']:.5g}", f"{one['value']:.5g}", interval, note, one["unit"]))
-    title = f"Refitted to {', '.join(refit['runs'])}; moved in standard deviations of what was known before:"
-    moved = refit["moved"]
-    last = (
-        f"Beyond what was known (2 sd): {', '.join(moved)}" if moved else "Nothing moved beyond what was known (2 sd)."
-    )
-    return "\n".join((title, columns(rows, right=(1, 2, 4)), last))
+    """What the refit changed: a line for each parameter, then those that moved beyond what was known."""
+    from pneumo_ros.wording.moved import moved_sentence, refit_table
+
+    return table_text(refit_table(refit)) + "\n" + moved_sentence(refit)

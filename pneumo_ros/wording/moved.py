@@ -1,4 +1,4 @@
-"""Parameters of the model itself that a refit moved farther than what was known of them allows."""
+"""Every parameter of a refit, and those of the model itself that moved farther than what was known of them allows."""
 
 import math
 from collections.abc import Mapping
@@ -29,3 +29,14 @@ def moved_table(refit: Mapping[str, Any]) -> Table | None:
         rows.append((name, number(one["before"], 5), number(one["value"], 5), span, unit))
     head = ("Moved", "before", "after", "95 % interval", "unit")
     return Table("", head, tuple(rows), (1, 2)) if rows else None
+
+
+def refit_table(refit: Mapping[str, Any]) -> Table:
+    """A row for each parameter of a refit."""
+    rows = []
+    for name, one in refit["parameters"].items():
+        span = interval(one["value"], math.inf if one["std"] is None else one["std"])
+        moved = f"{one['priors_moved']:+.1f}" + (" !" if one["moved_beyond_prior"] else "")
+        rows.append((name, number(one["before"], 5), number(one["value"], 5), span, moved, one["unit"]))
+    head = ("parameter", "before", "after", "95 % interval", "moved [prior deviations]", "unit")
+    return Table(f"Refitted to {', '.join(refit['runs'])}", head, tuple(rows), (1, 2, 4))
