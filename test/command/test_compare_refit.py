@@ -102,6 +102,7 @@ def test_the_report_is_about_these_files(tmp_path: Path, capsys: pytest.CaptureF
     assert f"Report written to {page}" in capsys.readouterr().err
 
 
+@pytest.mark.check
 def test_figures_are_written_into_a_new_folder(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib", reason="comes with the extra 'figures'")
     assert main(["compare", "steps", "--figures", str(tmp_path / "figures"), "--quiet"]) == 0

@@ -59,6 +59,7 @@ def test_it_is_found_missing(folder: Path) -> None:
     assert "magnetic_detent" in load_model(folder / "found.yaml", [folder / "mine.py"]).effects
 
 
+@pytest.mark.check
 def test_it_is_added_by_name(folder: Path) -> None:
     done = pneumo("add", "magnetic_detent", "fast", "--out", "more.yaml", "--json", "a.json", folder=folder)
     assert done.returncode == 0, done.stderr

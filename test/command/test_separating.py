@@ -14,6 +14,7 @@ def pneumo(*arguments: object) -> int:
     return main.main(["experiment", *map(str, arguments)])
 
 
+@pytest.mark.check
 def test_it_ranks_the_menu_and_writes_the_best(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, data = tmp_path / "best.yaml", tmp_path / "best.json"
     assert pneumo("--separate", "asymmetric_friction", "constant_load", "--write", path, "--json", data) == 0

@@ -30,6 +30,7 @@ def test_it_writes_a_control_file_and_says_what_changed(tmp_path: Path, capsys: 
     assert json.loads(data.read_text())["cost"]["before"] == pytest.approx(told["cost"]["after"])
 
 
+@pytest.mark.check
 def test_processes_find_the_same_gains_to_the_bit(tmp_path: Path) -> None:
     found = []
     for executor in ("one", "processes=2"):

@@ -62,6 +62,7 @@ def test_a_hidden_effect_is_found(
     assert outcome.waterfall[-1][1] < outcome.waterfall[1][1]  # held-out error, in the end and of the refitted base
 
 
+@pytest.mark.check
 def test_nothing_is_added_to_a_healthy_machine(tmp_path: Path) -> None:
     outcome = outcome_of(tmp_path, 23)
     assert outcome.added == ()

@@ -43,6 +43,7 @@ def test_the_equations_speak_against_an_effect_that_is_not_there() -> None:
     assert fitter(LEAKS).against(start, LEAKS, values | {f"{LEAKS}.conductance_a": 2e-10}) > 100.0
 
 
+@pytest.mark.check
 @pytest.mark.parametrize("std", [1e-4, None])
 def test_what_is_known_from_elsewhere_holds_a_refit_by_prediction(std: float | None) -> None:
     """Static friction is 2 % off: segments correct it, unless it is given as known."""

@@ -53,6 +53,7 @@ def test_the_input_is_put_off_and_nothing_else_changes() -> None:
     assert later(given, 0.0) is given
 
 
+@pytest.mark.check
 def test_an_effect_added_by_name_is_timed_too_and_says_so() -> None:
     """Half a millisecond of lag causes errors of newtons where the axis jerks; the friction law would absorb them."""
     found = add(AXIS, ["asymmetric_viscous_friction"], [run(0.8e-3)])

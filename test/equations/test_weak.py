@@ -31,6 +31,7 @@ def test_the_true_machine_leaves_its_noise(kind: str) -> None:
     assert found["momentum"].rms < 0.06
 
 
+@pytest.mark.check
 def test_the_true_machine_leaves_its_noise_on_the_independent_rig() -> None:
     """Eight runs of two worn rigs that hide nothing."""
     found = [

@@ -86,6 +86,7 @@ def test_the_machine_file_written_says_the_same(tmp_path_factory: pytest.TempPat
     assert load_model(path).parameters == campaign().model.parameters
 
 
+@pytest.mark.check
 def test_the_independent_rig_is_identified() -> None:
     true, found = of_the_rig()
     off = errors(found, true)

@@ -73,6 +73,7 @@ def test_lanes_of_all_effects_follow_a_motion_as_each_would_alone() -> None:
     assert (plain[0].tobytes(), plain[1].tobytes()) == (states[:2, :4].tobytes(), slopes[:2, :4].tobytes())
 
 
+@pytest.mark.check
 @pytest.mark.parametrize("entry", ["run_lanes", "follow_lanes"])
 def test_nothing_in_a_kernel_calls_out_and_lanes_are_vectors(entry: str) -> None:
     """No elementary function of a library, which would keep lanes from advancing side by side."""

@@ -48,6 +48,7 @@ def test_a_piston_that_never_moves_is_said_to_once(effect: str) -> None:
     assert note.startswith("the piston does not move: its position stays at -0.")
 
 
+@pytest.mark.check
 def test_no_recording_of_the_rig_alarms() -> None:
     """Neither the shared recordings, if present, nor those of the driven machine."""
     folders = sorted(path for path in RECORDED.parent.glob("*/*") if (path / "metadata.yaml").exists())

@@ -162,7 +162,7 @@ def test_command_line_experiment_and_json_stand_as_they_were_given(opened: Open)
     assert json.loads(block)["verdict"] == FOUND
 
 
-@pytest.mark.parametrize("verdict", WORDS)
+@pytest.mark.parametrize("verdict", [FOUND, *(pytest.param(w, marks=pytest.mark.check) for w in WORDS if w != FOUND)])
 def test_it_can_be_read_in_light_and_dark_wide_and_narrow(opened: Open, verdict: str) -> None:
     visit = opened(verdict)
     visit.show("waterfall", "evidence-t")

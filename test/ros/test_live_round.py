@@ -21,6 +21,8 @@ from pneumo_ros.experiment.programme_file import read_programme
 from pneumo_ros.plant import load_model, save_model
 from pneumo_ros.records import read_recording
 
+pytestmark = pytest.mark.check  # test_experiment and test_identification hold its two halves
+
 TRUTH = load_model("axis")
 FRICTION = {
     "lugre_friction.coulomb_friction": 105.0,

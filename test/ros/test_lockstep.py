@@ -3,6 +3,7 @@
 import signal
 from pathlib import Path
 
+import pytest
 from ros.probe import Probe, probe, stamp
 from ros.processes import node, running
 
@@ -66,6 +67,7 @@ def test_runs_repeat_bit_for_bit_in_one_process_and_in_two(tmp_path: Path) -> No
     assert_same_run(first, apart(tmp_path, "third"))
 
 
+@pytest.mark.check
 def test_another_seed_gives_another_run(tmp_path: Path) -> None:
     first, other = together(tmp_path, "seed_0"), together(tmp_path, "seed_1", seed=1)
     differing = [s for s in first.keys() & other.keys() if first[s] != other[s]]

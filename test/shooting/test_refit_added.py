@@ -34,6 +34,7 @@ def added() -> Refit:
     return refit(with_effect(before.model, VISCOUS, coefficient=0.0), [run], start=before)
 
 
+@pytest.mark.check
 def test_an_effect_added_to_a_refit_is_found_though_that_had_bent_the_rest() -> None:
     true, _, before = base()
     found = added()

@@ -111,7 +111,7 @@ def test_every_control_has_a_name(tab: Tab) -> None:
     assert tab.page.evaluate(nameless) == []
 
 
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (820, "dark")])
+@pytest.mark.parametrize(("width", "scheme"), [pytest.param(1280, "light", marks=pytest.mark.check), (820, "dark")])
 def test_nothing_sticks_out(browser: object, served: object, width: int, scheme: str) -> None:
     opened = Tab(browser, served.address, width, scheme)  # type: ignore[attr-defined]  # of the fixture
     try:
