@@ -1,4 +1,4 @@
-"""Reading ahead: the items of an iterator, made by another thread before they are wanted."""
+"""Reading ahead: another thread makes the items of an iterator before they are needed."""
 
 import threading
 from collections.abc import Iterable, Iterator
@@ -8,13 +8,13 @@ from typing import TypeVar
 
 T = TypeVar("T")
 BATCH = 256  # items handed over at a time
-WAIT = 0.1  # s between two looks whether anybody still wants them
+WAIT = 0.1  # s between two checks that the reader is still there
 
 
 def ahead(items: Iterable[T], batches: int = 64) -> Iterator[T]:
     """The same items in the same order; up to `batches` times BATCH of them are ready early.
 
-    What `items` raises is raised here, in its place.
+    An exception of `items` is raised here, after the items before it.
     """
     queue: Queue[list[T] | BaseException] = Queue(maxsize=batches)
     over = threading.Event()
@@ -30,7 +30,7 @@ def ahead(items: Iterable[T], batches: int = 64) -> Iterator[T]:
 
 
 def _fill(queue: "Queue[list[T] | BaseException]", items: Iterator[T], over: threading.Event) -> None:
-    """Put batches until there are no more: the last one is empty, or the exception that ended them."""
+    """Put batches; the last one is empty, or the exception that ended the items."""
     more = True
     while more and not over.is_set():
         try:

@@ -9,12 +9,12 @@ from itertools import chain, islice
 from pneumo_ros.axis.ahead import ahead
 from pneumo_ros.records.bag import Bag, Message, Overview
 
-CLOCK_PERIOD = 10_000_000  # ns of the wall's time between two messages on /clock
+CLOCK_PERIOD = 10_000_000  # ns of wall time between two messages on /clock
 
 
 @dataclass
 class Schedule:
-    """Recorded time against the wall's: `rate` seconds of the recording pass in one second."""
+    """Recorded time against wall time: `rate` seconds of the recording pass in one second."""
 
     begin: int  # recorded time that is played first [ns]
     rate: float
@@ -36,7 +36,7 @@ class Playback:
         """`wanted` chooses the topics by name; `rate` is recorded over real time; `offset` [s] is skipped."""
         self.stop = threading.Event()
         self.sent = 0
-        self.behind = 0  # ns, of the message that came latest
+        self.behind = 0  # ns, largest delay of a message
         self.position = self.begin = overview.start + round(offset * 1e9)
         self._bag, self._wanted, self._rate = bag, wanted, rate
         self._first = [one for one in standing(overview.latched, self.begin) if wanted(one.channel.topic)]
@@ -44,10 +44,10 @@ class Playback:
     def play(self, send: Callable[[Message], None], tick: Callable[[int], None] | None) -> None:
         """Hand every message to `send` when it is due, and the recorded time [ns] to `tick` a hundred times a second.
 
-        What latched topics said last before the begin, or first after it, comes at once.
+        The last message of each latched topic before the begin, or the first after it, comes at once.
         """
         rest = self._rest()
-        following = list(islice(rest, 1))  # time starts when the reading has
+        following = list(islice(rest, 1))  # the clock starts after the first message is read
         if tick:
             tick(self.begin)
         for message in self._first:
@@ -66,7 +66,7 @@ class Playback:
             self.behind = max(self.behind, time.monotonic_ns() - due)
 
     def _rest(self) -> Iterator[Message]:
-        """What follows the begin, without what came at once."""
+        """Messages after the begin, without those that came at once."""
         early = {(one.channel.topic, one.log_time) for one in self._first}
         for message in ahead(self._bag.messages(self.begin)):
             at_once = message.channel.topic, message.log_time
@@ -86,7 +86,7 @@ class Playback:
 
 
 def standing(latched: Iterable[Message], begin: int) -> list[Message]:
-    """What each latched topic says at the time `begin`: its last message until then, else its first one."""
+    """The message of each latched topic that holds at `begin`: its last one until then, else its first one."""
     found: dict[str, Message] = {}
     for message in latched:  # in recorded time
         if message.channel.topic not in found or message.log_time <= begin:

@@ -14,7 +14,7 @@ PRIORITY = Setting(
 def take_priority(priority: int) -> int:
     """Give all threads of this process SCHED_FIFO `priority`; returns what was granted, 0 if nothing was.
 
-    Threads and processes that are started later are ordinary ones: compilers must not hold up anybody.
+    Threads and processes started later have normal priority: compilers must not delay the control loop.
     """
     if priority == 0:
         return 0

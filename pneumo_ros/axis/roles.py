@@ -18,7 +18,7 @@ CONTROLLER = Role("controller", (COMMAND,))
 
 
 class Claim(NamedTuple):
-    """Who has a role since when [ns, system clock]; of two claims the smaller one stays."""
+    """Who has a role since when [ns, system clock]; of two claims the smaller one wins."""
 
     since: int
     key: str  # random: two nodes may have the same name and, in theory, the same time

@@ -29,7 +29,7 @@ class Setting:
     choices: tuple[str, ...] = ()
 
     def coerce(self, value: Any) -> Any:
-        """`value` as this parameter's type: whole numbers serve where real ones are wanted, in lists too.
+        """`value` as this parameter's type: whole numbers become real ones where needed, in lists too.
 
         Raises UsageError, naming what is allowed, for another type, a number out of range or not finite, or a text
         that is no choice.

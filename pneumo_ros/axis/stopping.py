@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM ask for an end; rclpy's own handlers would end its context before the last messages are sent."""
+"""SIGINT and SIGTERM request the end; rclpy's own handlers would end its context before the last messages are sent."""
 
 import signal
 import threading

@@ -5,13 +5,13 @@ import time
 from collections.abc import Callable
 
 LATE = 1_000_000  # ns; a tick this much behind its deadline counts as late
-BACKLOG = 100_000_000  # ns; older work is dropped, or a slow machine would never catch up
+BACKLOG = 100_000_000  # ns; older work is dropped: a slow machine would never catch up
 
 
 class Ticker:
     """A thread that calls `tick(deadline_ns)` once per period; deadlines are of CLOCK_MONOTONIC and do not drift.
 
-    Late ticks are made up for at once, until 0.1 s is missing; what is older is dropped and counted in `dropped_ns`.
+    Late ticks follow at once; a delay of more than 0.1 s is dropped and counted in `dropped_ns`.
     """
 
     def __init__(

@@ -169,7 +169,7 @@ def test_health_names_pressures_that_a_law_needs_and_nobody_sends() -> None:
     loop.press("b", 3e5)
     assert loop.measure(10**18, 0.0, None) == 0.0
     (warning,) = health_of(loop, "", 0.0, False).warnings
-    assert warning == "the law needs chamber_a/pressure, of which nothing comes: sending 0 V"
+    assert warning == "the law needs chamber_a/pressure, which nobody sends: sending 0 V"
     loop.press("a", 3e5)
     assert health_of(loop, "", 0.0, False).message == "running"
 

@@ -55,4 +55,4 @@ def test_giving_up_is_reported() -> None:
     motion.aim(0.05, None, 1.0, 0.05)
     found = Progress(trajectory, 0.003).verdict(1.1, 0.05, motion)
     assert found is not None
-    assert found.reason == "something else was asked for"
+    assert found.reason == "another motion was requested"

@@ -100,7 +100,7 @@ def test_silence_is_answered_with_0_v_and_said(tmp_path: Path) -> None:
         process.wait_for("no measurement for 0.2 s: sending 0 V")
         plant.probe.wait(lambda: plant.commands[-1].data == 0.0, "0 V")
         message, _ = plant.probe.health("silence/controller")
-        assert "measurements stay away" in message
+        assert "measurements are missing" in message
         plant.push()
         process.wait_for("measurements are back")
         assert process.said.count("sending 0 V") == 1

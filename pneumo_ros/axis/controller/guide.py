@@ -1,4 +1,4 @@
-"""What is asked of the piston, and what of that is done: following, holding, stopped or venting. No ROS in here."""
+"""Requests to the piston, and how they are carried out: following, holding, stopped or venting. No ROS in here."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from pneumo_ros.control import Law, Reference, Setpoint
 from pneumo_ros.control.motion import Capability, Limits, Motion, Trajectory, Vent, Waypoint, ahead, require, slowed
 from pneumo_ros.errors import UsageError
 
-NEAR = 0.01  # m; from nearer than that, a smooth reference is followed as it is
+NEAR = 0.01  # m; a smooth reference nearer to the piston than this is followed without a profile
 
 
 class Mode(Enum):
@@ -24,24 +24,24 @@ class Mode(Enum):
 class Guide:
     """Takes references while it is following; `stop`, `hold` and `vent` end that until `resume`.
 
-    Times [s] are the control loop's. Requests that are not granted raise UsageError and change nothing.
+    Times [s] are the control loop's. A refused request raises UsageError and changes nothing.
     """
 
     def __init__(self, law: Law) -> None:
-        """`law` holds what is known of machine and valve."""
+        """`law` knows the machine and the valve."""
         self.law, self.mode = law, Mode.FOLLOWING
         self.limits, self.motion = Limits(), Motion(Limits())
         self.slow_down = self.vent_unseen = False
         self.supply = Supply()
-        self.built_in: tuple[Reference, bool] | None = None  # a reference of its own, and whether it jumps
+        self.built_in: tuple[Reference, bool] | None = None  # a reference from parameters, and whether it jumps
         self.position: float | None = None
         self._time = 0.0  # of the last measurement
-        self._early: tuple[float, float | None] | None = None  # what was asked for before the first measurement
+        self._early: tuple[float, float | None] | None = None  # requested before the first measurement
         self._vent: Vent | None = None
 
     @property
     def capability(self) -> Capability:
-        """What the machine can do with the supply pressure as it is."""
+        """What the machine can do at the present supply pressure."""
         return Capability(self.law.machine, self.law.valve, self.supply.pressure)
 
     # --- every measurement ------------------------------------------------------------------------------------------
@@ -57,33 +57,33 @@ class Guide:
         return self.motion.at(time, position)
 
     def forced(self, time: float, pressures: Mapping[str, float | None]) -> float | None:
-        """The voltage that takes the place of the law's answer; None: the law answers."""
+        """The voltage that replaces the law's; None: the law decides."""
         if self._vent is not None:
             return self._vent.voltage(time, pressures)
         return 0.0 if self.mode is Mode.STOPPED or self.supply.lost else None
 
     def restart(self, time: float, position: float) -> None:
         """Restart from where the piston is, after a pause of the measurements or a step of the clock."""
-        self.motion.restart(time, position, "measurements stayed away")
+        self.motion.restart(time, position, "measurements were missing")
 
     def supplied(self, pressure: float, time: float) -> None:
-        """Take the supply pressure [Pa abs]; once it is back, the piston stays where it is by then."""
+        """Take the supply pressure [Pa abs]; when it returns, the piston holds its present position."""
         before, changed = self.supply.lost, self.supply.take(pressure)
         if self._vent is not None and not self.supply.shut_off(self.law.machine.atmospheric_pressure):
-            self.stop()  # or the valve that vents would drive the piston
+            self.stop()  # otherwise the open valve would drive the piston
         if self.position is not None and before and not self.supply.lost and self.motion.asked:
             self._settle(time, "the supply pressure was lost")
         if changed:
             self.fit(time)
 
     def fit(self, time: float) -> None:
-        """Make the limits fit what the machine can do; whenever either has changed."""
+        """Fit the limits to what the machine can do; call it when either has changed."""
         self.motion.change_limits(self.capability.fit(self.limits.on_stroke(self.law.machine.stroke)), time)
 
     # --- requests ---------------------------------------------------------------------------------------------------
 
     def aim(self, position: float, velocity: float | None, time: float) -> None:
-        """Go to a position [m], which moves at `velocity` [m/s]; None: estimated from one request to the next."""
+        """Go to a position [m] that moves at `velocity` [m/s]; None: estimated from successive requests."""
         self._require_following()
         self.motion.limits.require(position)
         if velocity is not None and not math.isfinite(velocity):
@@ -94,7 +94,7 @@ class Guide:
             self.motion.aim(position, velocity, time, self.position)
 
     def follow(self, waypoints: Sequence[Waypoint], delay: float, time: float) -> tuple[Trajectory, float]:
-        """Follow waypoints `delay` [s] from now, negative: since then; the trajectory and how much it was slowed."""
+        """Follow waypoints that start `delay` [s] from now (may be negative); the trajectory and its slowing factor."""
         self._require_following()
         if self.built_in is not None:
             raise UsageError("the controller follows its own reference; set reference.shape to topic first")
@@ -124,7 +124,7 @@ class Guide:
         """Brake within the limits, and go on taking references."""
         self._require_following()
         if self.position is not None and self.motion.asked:
-            self.motion.brake(time, self.position, "asked to end there")
+            self.motion.brake(time, self.position, "halt was requested")
 
     def stop(self) -> None:
         """Close the valve at once; a trajectory is given up."""
@@ -132,7 +132,7 @@ class Guide:
         self._give_up("the valve was closed")
 
     def vent(self, time: float) -> None:
-        """Empty both chambers, which needs a supply that is shut off: else the piston would be driven."""
+        """Empty both chambers. The supply must be shut off: otherwise it would drive the piston."""
         atmosphere = self.law.machine.atmospheric_pressure
         self.supply.require_shut_off(atmosphere, self.vent_unseen)
         self.mode, self._vent = Mode.VENTING, Vent(time, atmosphere, self.law.valve.max_voltage)
@@ -149,7 +149,7 @@ class Guide:
             self.motion.rest(self._time, self.position, reason)
 
     def _settle(self, time: float, reason: str) -> None:
-        """After the valve was closed or vented: the piston stays where it is by now."""
+        """Hold the present position, after the valve was closed or the chambers were vented."""
         assert self.position is not None
         self.law.reset()
         self.motion.rest(time, self.position, reason)

@@ -1,4 +1,4 @@
-"""Parameters that say how the piston is guided, and what they mean for its guide."""
+"""Parameters of the guide of the piston, and how they are set on it."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,15 +8,15 @@ from pneumo_ros.axis.setting import Setting
 from pneumo_ros.control.motion import Limits
 
 SETTINGS = (
-    Setting("limits.low", -100.0, "least position; the stroke of the machine counts, too", "m", -100.0, 100.0),
-    Setting("limits.high", 100.0, "largest position; the stroke of the machine counts, too", "m", -100.0, 100.0),
-    Setting("profile.speed", 0.12, "on the way to a position; no more than the machine does", "m/s", 1e-4, 10.0),
+    Setting("limits.low", -100.0, "least position; the stroke of the machine limits it, too", "m", -100.0, 100.0),
+    Setting("limits.high", 100.0, "largest position; the stroke of the machine limits it, too", "m", -100.0, 100.0),
+    Setting("profile.speed", 0.12, "on the way to a position; at most what the machine can do", "m/s", 1e-4, 10.0),
     Setting("profile.acceleration", 1.0, "on the way to a position", "m/s2", 1e-3, 1000.0),
     Setting("profile.jerk", 20.0, "on the way to a position", "m/s3", 1e-2, 1e6),
-    Setting("following_error", 0.05, "lead over the piston that ends a trajectory or a profile", "m", 1e-3, 100.0),
+    Setting("following_error", 0.05, "distance to the piston that ends a trajectory or a profile", "m", 1e-3, 100.0),
     Setting("goal_tolerance", 0.003, "distance from its goal at which a trajectory has succeeded", "m", 1e-5, 1.0),
-    Setting("reference_timeout", 0.2, "age of a moving reference at which its last position stands", "s", 0.001, 60.0),
-    Setting("trajectory.slow_down", False, "slow down trajectories that ask for too much; false: refuse them"),
+    Setting("reference_timeout", 0.2, "age of a moving reference at which its last position is held", "s", 0.001, 60.0),
+    Setting("trajectory.slow_down", False, "slow down trajectories beyond the limits; false: refuse them"),
     Setting("minimum_supply", 2e5, "supply/pressure below which 0 V is sent; 0: never", "Pa", 0.0, 1e8),
     Setting("vent_unseen", False, "vent even if no supply/pressure shows that the supply is shut off"),
 )

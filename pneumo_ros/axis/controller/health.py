@@ -1,4 +1,4 @@
-"""What the controller says of itself on /diagnostics."""
+"""What the controller reports on /diagnostics."""
 
 from pneumo_ros.axis.controller.guide import Mode
 from pneumo_ros.axis.controller.loop import Loop
@@ -9,7 +9,7 @@ from pneumo_ros.records.contract import PRESSURE_A, PRESSURE_B
 def health_of(loop: Loop, refused: str, age: float | None, stale: bool) -> Health:
     """Counts, errors and what is missing; `age` [s] of the last measurement, None before the first one.
 
-    `refused` says what was refused last, and why.
+    `refused` is the last refusal and its reason.
     """
     guide = loop.guide
     values: dict[str, object] = {"measurements": loop.measured, "rejected_inputs": loop.refused, "refused": refused}
@@ -24,7 +24,7 @@ def health_of(loop: Loop, refused: str, age: float | None, stale: bool) -> Healt
 
 
 def _warnings(loop: Loop, age: float | None, stale: bool) -> list[str]:
-    missing = "no measurement yet" if age is None else "measurements stay away: sending 0 V"
+    missing = "no measurement yet" if age is None else "measurements are missing: sending 0 V"
     warnings = [missing] if age is None or stale else _missing_pressures(loop)
     if not loop.guide.motion.asked:
         warnings.append("no reference yet: holding 0 V")
@@ -32,9 +32,9 @@ def _warnings(loop: Loop, age: float | None, stale: bool) -> list[str]:
 
 
 def _missing_pressures(loop: Loop) -> list[str]:
-    """A warning if the law reads pressures that nobody sends."""
+    """A warning if the law needs pressures that nobody sends."""
     known, topics = loop.pressures, {"a": PRESSURE_A, "b": PRESSURE_B}
     silent = [topic for chamber, topic in topics.items() if known[chamber] is None]
     if not (silent and loop.law.reads_pressures):
         return []
-    return [f"the law needs {' and '.join(silent)}, of which nothing comes: sending 0 V"]
+    return [f"the law needs {' and '.join(silent)}, which nobody sends: sending 0 V"]

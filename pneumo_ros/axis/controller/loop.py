@@ -1,15 +1,15 @@
-"""Measurement in, voltage out: the control law, what guides it, and what is refused. No ROS in here."""
+"""Measurement in, voltage out: the control law, its guide, and refused inputs. No ROS in here."""
 
 import math
 
 from pneumo_ros.axis.controller.guide import Guide
 from pneumo_ros.control import Law, Measurement, Setpoint
 
-JUMP = 1.0  # s; a stamp this much before the last one means that the clock was set, not that messages overtook
+JUMP = 1.0  # s; a stamp this much before the last one: the clock was set; less: messages came out of order
 
 
 class Loop:
-    """One control loop. Stamps [ns] are those of headers; `time` [s] begins at 0 and rises however the clock is set.
+    """One control loop. Stamps [ns] are those of headers; `time` [s] begins at 0 and rises even if the clock is set.
 
     After a pause, and when the clock was set, the law restarts, and the motion restarts where the piston is.
     """
@@ -25,7 +25,7 @@ class Loop:
         self._last: int | None = None
 
     def press(self, chamber: str, pressure: float) -> None:
-        """Take the pressure [Pa abs] in chamber "a" or "b"; refused, counted, if it is not finite."""
+        """Take the pressure [Pa abs] in chamber "a" or "b"; refused and counted if it is not finite."""
         if math.isfinite(pressure):
             self._pressures[chamber] = (self.time, pressure)
         else:
@@ -33,7 +33,7 @@ class Loop:
 
     @property
     def pressures(self) -> dict[str, float | None]:
-        """Pressures [Pa abs] by chamber, None where none came lately."""
+        """Pressures [Pa abs] by chamber, None without a recent one."""
         known: dict[str, float | None] = {"a": None, "b": None}
         for chamber, (time, pressure) in self._pressures.items():
             if self.time - time <= self.timeout:
@@ -73,7 +73,7 @@ class Loop:
         if self._last is None or stamp < self._last - JUMP * 1e9:
             self._origin = stamp - round(self.time * 1e9)
         elif stamp < self._last:
-            return False  # overtaken by a later one
+            return False  # a later one came first
         anew = self._last is None or not 0 <= stamp - self._last <= self.timeout * 1e9
         self._last, self.time = stamp, (stamp - self._origin) * 1e-9
         if anew:
@@ -81,7 +81,7 @@ class Loop:
         return True
 
     def restart(self, position: float) -> None:
-        """Forget what the law knows of the past, and go on from `position` [m]."""
+        """Reset the law, and continue from `position` [m]."""
         self.law.reset()
         self.guide.restart(self.time, position)
         self.restarts += 1

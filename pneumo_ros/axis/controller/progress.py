@@ -1,4 +1,4 @@
-"""How a trajectory that somebody waits for is coming along. No ROS in here."""
+"""Progress of a trajectory that an action client waits for. No ROS in here."""
 
 import math
 from typing import NamedTuple
@@ -10,7 +10,7 @@ SUCCESSFUL, INVALID_GOAL, PATH_TOLERANCE_VIOLATED, GOAL_TOLERANCE_VIOLATED = 0, 
 
 
 class Verdict(NamedTuple):
-    """How it ended: code of the action's result, and why in words."""
+    """How a trajectory ended: code of the action's result, and the reason."""
 
     code: int
     reason: str
@@ -31,7 +31,7 @@ class Progress:
     def verdict(self, time: float, position: float, motion: Motion) -> Verdict | None:
         """How it ended, None while it goes on; at loop time `time` [s], with the piston at `position` [m]."""
         if not motion.follows(self.trajectory):
-            return Verdict(PATH_TOLERANCE_VIOLATED, motion.reason or "something else was asked for")
+            return Verdict(PATH_TOLERANCE_VIOLATED, motion.reason or "another motion was requested")
         error = self.trajectory(time).position - position
         if time < self.trajectory.end:
             if abs(error) > self._path and time >= self.trajectory.begin:

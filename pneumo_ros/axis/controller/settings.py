@@ -26,13 +26,13 @@ _OWN = (
     Setting("max_voltage", 10.0, "limit of the command", "V", 0.0, 100.0),
 )
 _VALVE = (
-    # names as in the machine file, which may be given as it is
+    # names as in the machine file, which can be given unchanged
     Setting("dead_zone.right_limit", 0.78, "voltage at which port a begins to fill", "V", 0.0, 10.0),
     Setting("dead_zone.left_limit", 0.78, "magnitude of the voltage at which port a begins to empty", "V", 0.0, 10.0),
     Setting("dead_zone.right_slope", 1.0, "slope beyond the right limit", "V/V", 0.01, 100.0),
     Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
     Setting(
-        "valve.smoothing", SMOOTHING, "opening by which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
+        "valve.smoothing", SMOOTHING, "opening at which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
     ),
 )
 EFFECTS = "effects"
@@ -53,7 +53,7 @@ _REFERENCE = (
     Setting("reference.shape", "topic", "where the reference comes from; topic: position/reference", choices=SHAPES),
     Setting("reference.position", 0.0, "reference of shape constant", "m", -100.0, 100.0),
     Setting("reference.levels", [0.0, 0.06], "references of shape steps, one after the other", "m", -100.0, 100.0),
-    Setting("reference.hold", 8.0, "time each of the levels is held", "s", 0.001, 1e6),
+    Setting("reference.hold", 8.0, "time for which each level is held", "s", 0.001, 1e6),
     Setting("reference.offset", 0.0, "middle of the sine", "m", -100.0, 100.0),
     Setting("reference.amplitude", 0.3, "amplitude of the sine", "m", -100.0, 100.0),
     Setting("reference.frequency", 0.05, "frequency of the sine", "Hz", 0.0, 100.0),
@@ -72,7 +72,7 @@ def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
 
 
 def valve_of(values: Mapping[str, Any]) -> ValveInverse:
-    """The inverse of the valve; UsageError if the values are no valve."""
+    """The inverse of the valve; UsageError if the values do not describe a valve."""
     dead_zone = {name: values[f"dead_zone.{name}"] for name in _DEAD_ZONE}
     return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
 
@@ -108,12 +108,12 @@ def machine_of(values: Mapping[str, Any]) -> Machine:
 
 
 def law_of(values: Mapping[str, Any]) -> Law:
-    """The law that the parameters describe; UsageError for a gain out of range or values that are no valve."""
+    """The law that the parameters describe; UsageError for a gain out of range or a wrong valve."""
     return LAWS[values["law"]](gains_of(values["law"], values), valve_of(values), machine_of(values))
 
 
 def check(values: Mapping[str, Any]) -> None:
-    """Raise UsageError unless the parameters together make a law, leave room to move, and a reference inside it."""
+    """Raise UsageError unless the parameters make a law, leave room to move, and keep the reference inside it."""
     limits_of(values).on_stroke(law_of(values).machine.stroke)
     reference_of(values)
 
@@ -128,7 +128,7 @@ def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
 
 
 def absent(given: Mapping[str, Any]) -> dict[str, float]:
-    """Values that stand for the effects which a machine file does not list: no friction, a valve that opens at once."""
+    """Values for effects that a machine file does not list: no friction, a valve that opens at once."""
     effects = given.get(EFFECTS)
     if effects is None:
         return {}

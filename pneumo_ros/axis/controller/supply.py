@@ -4,8 +4,8 @@ import math
 
 from pneumo_ros.errors import UsageError
 
-DEAD = 1.3  # times the atmosphere's pressure: what a supply that is shut off has at most
-CHANGE = 0.02  # relative; less than that changes nothing for the limits
+DEAD = 1.3  # times atmospheric pressure: the highest pressure of a supply that is shut off
+CHANGE = 0.02  # relative; a smaller change leaves the limits as they are
 
 
 class Supply:
@@ -23,7 +23,7 @@ class Supply:
         return self.pressure is not None and self.pressure < self.least
 
     def take(self, pressure: float) -> bool:
-        """Take a measurement [Pa abs]; whether it differs from the last one that did. UsageError for no number."""
+        """Take a measurement [Pa abs]; whether it changed by more than CHANGE. UsageError if not finite."""
         if not math.isfinite(pressure):
             raise UsageError(f"supply pressure {pressure!r} is no finite number")
         self.pressure = pressure
@@ -33,7 +33,7 @@ class Supply:
         return True
 
     def require_shut_off(self, atmosphere: float, unseen: bool) -> None:
-        """Raise UsageError unless the supply is shut off, as measured or, where nobody measures, as `unseen` says."""
+        """Raise UsageError unless the supply is shut off, as measured or, if not measured, as `unseen` says."""
         if self.pressure is None and not unseen:
             raise UsageError(
                 "no supply/pressure shows that the supply is shut off; shut it, then set vent_unseen to true"
@@ -45,5 +45,5 @@ class Supply:
             )
 
     def shut_off(self, atmosphere: float) -> bool:
-        """Whether nothing speaks against it, for an atmosphere of that pressure [Pa abs]."""
+        """Whether the supply is shut off or not measured; `atmosphere` [Pa abs]."""
         return self.pressure is None or self.pressure <= DEAD * atmosphere

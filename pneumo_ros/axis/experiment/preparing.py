@@ -1,4 +1,4 @@
-"""What an experiment is to do, and where its recordings go, from parameters."""
+"""The programme of an experiment and the folder for its recordings, from parameters."""
 
 import time
 from collections.abc import Mapping

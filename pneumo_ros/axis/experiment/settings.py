@@ -5,7 +5,7 @@ from pneumo_ros.axis.setting import Setting
 from pneumo_ros.records.contract import JOINT
 
 SETTINGS = (
-    Setting("programme", "", "programme file to run; none: what `experiment` is for `model`", live=False),
+    Setting("programme", "", "programme file to run; none: `experiment` for `model`", live=False),
     Setting("experiment", "constant-voltage", "experiment to run without a programme file", live=False),
     Setting("model", "axis", "machine file, or name of a shipped one, that such a programme is made for", live=False),
     Setting("output", "", "folder for the recordings; none: experiment_ and the time, here", live=False),

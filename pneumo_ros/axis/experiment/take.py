@@ -29,12 +29,12 @@ class Take:
     _ended: float = 0.0  # when `end` became known, on the monotonic clock [s]
 
     def finish(self, stamp: int) -> None:
-        """It ends before this stamp [ns], if it has not ended before."""
+        """End it before this stamp [ns], unless its end is known already."""
         if self.end is None:
             self.end, self._ended = stamp, time.monotonic()
 
     def over(self, seconds: float) -> bool:
-        """Whether its end has been known for so long."""
+        """Whether its end has been known for longer than `seconds`."""
         return self.end is not None and time.monotonic() - self._ended > seconds
 
     def wants(self, entry: Entry) -> bool:

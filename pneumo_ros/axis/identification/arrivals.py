@@ -1,7 +1,7 @@
 """Which recordings are there, and which of them are complete. No ROS.
 
 A bag is complete when its writer has closed it: an MCAP file then ends with a summary, and the folder has its
-metadata.yaml. One whose writer was killed never gets there; it counts as complete when nothing has changed for a while.
+metadata.yaml. A bag whose writer was killed is never closed; it counts as complete when it has not changed for a while.
 """
 
 import struct
@@ -15,7 +15,7 @@ from mcap.opcode import Opcode
 from pneumo_ros.records.mcap_file import MAGIC
 
 FILES = (".mcap", ".db3")
-DEAD = 10.0  # s without a change after which nobody writes any more
+DEAD = 10.0  # s without a change after which the writer counts as dead
 _FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its index, CRC
 
 Print = tuple[tuple[str, int, int], ...]  # name, size and time of change of every file: differs when anything changed
@@ -62,7 +62,7 @@ class Arrivals:
 
 
 def found(folder: Path) -> list[Path]:
-    """Recordings in `folder` and in the folders right below it, by name; hidden ones are under construction."""
+    """Recordings in `folder` and in the folders right below it, by name; hidden ones are still being made."""
     if not folder.is_dir():
         return []
     entries = sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
@@ -79,7 +79,7 @@ def _is_recording(path: Path) -> bool:
 
 
 def closed(path: Path) -> bool:
-    """Whether whoever wrote the recording has closed it."""
+    """Whether the writer of the recording has closed it."""
     if path.is_dir():
         files = [entry for entry in path.iterdir() if entry.suffix in FILES]
         return (path / "metadata.yaml").exists() and all(map(closed, files))
@@ -102,7 +102,7 @@ def _has_summary(path: Path) -> bool:
 
 
 def _mark(path: Path) -> Print:
-    """Empty when there is no recording; a file that goes away under the hands counts as changed."""
+    """Empty when there is no recording; a file that disappears meanwhile counts as changed."""
     try:
         files = sorted(path.iterdir()) if path.is_dir() else [path]
         states = [(file.name, file.stat()) for file in files if file.is_file()]

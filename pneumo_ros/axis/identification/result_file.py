@@ -1,4 +1,4 @@
-"""What an identification leaves behind: a machine file of its own number, the whole result beside it, a message."""
+"""Output of an identification: a numbered machine file, the whole result beside it, and a message."""
 
 import json
 from collections.abc import Mapping
@@ -9,14 +9,14 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.files import write_whole
 from pneumo_ros.plant import Model, save_model
 
-_NUMBERS = 1000  # tried: so many identifications do not end in the same moment
-_EVIDENCE = ("map", "refused", "breakaways", "machine")  # much of it; it is in the file
+_NUMBERS = 1000  # tried at most: fewer identifications end at the same moment
+_EVIDENCE = ("map", "refused", "breakaways", "machine")  # large; only in the file
 
 
 def store(model: Model, result: Mapping[str, Any], folder: Path) -> Path:
     """Write machine file and result under the first free number; returns the machine file's path.
 
-    Raises UsageError when the folder cannot be made or written, DataError when the disk is full or no number free.
+    Raises UsageError when the folder cannot be made or written, DataError when the disk is full or no number is free.
     """
     folder.mkdir(parents=True, exist_ok=True)
     first = 1 + max((_number(path) for path in folder.glob(f"{model.name}_*.yaml")), default=0)
@@ -45,7 +45,7 @@ def _number(path: Path) -> int:
 
 
 def message(result: Mapping[str, Any]) -> dict[str, Any]:
-    """What is published of a result: parameters with intervals, what is not determined, which recordings were used."""
+    """The published part of a result: parameters with intervals, what is not determined, and the recordings used."""
     short = {name: value for name, value in result.items() if name not in _EVIDENCE}
     short["runs"] = [{key: run[key] for key in ("name", "windows", "used")} for run in result["runs"]]
     fit = result["map"]
@@ -54,7 +54,7 @@ def message(result: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def determined(result: Mapping[str, Any]) -> dict[str, float]:
-    """Values of the parameters that the recordings determine; the refit of the whole model has the last word."""
+    """Values of the parameters that the recordings determine; those of a refit of the whole model come first."""
     found = {name: one for name, one in result["parameters"].items() if one["determined"]}
     if "refit" in result:
         refitted = result["refit"]["parameters"].items()

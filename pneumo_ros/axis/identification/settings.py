@@ -10,8 +10,8 @@ SETTINGS = (
     Setting("model", "axis", "machine file, or name of a shipped one, to start from", live=False),
     Setting("output", "identified", "folder for machine files; each gets a number of its own", live=False),
     Setting("auto", True, "identify as recordings arrive; otherwise only on ~/identify"),
-    Setting("quiet", 5.0, "time without a new recording before that begins", "s", 0.0, 3600.0),
-    Setting("whole_model", False, "then refit all of the machine that is not measured otherwise, to the same runs"),
+    Setting("quiet", 5.0, "time without a new recording before it identifies", "s", 0.0, 3600.0),
+    Setting("whole_model", False, "then refit all parameters that are not measured otherwise, to the same runs"),
     Setting("apply", False, "set what was identified on the node `target`, all at once"),
     Setting("target", "simulator", "node to set it on; in this node's namespace unless it starts with /"),
 )

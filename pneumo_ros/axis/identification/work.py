@@ -1,6 +1,6 @@
-"""The work itself, as a program: a job in JSON on stdin, what comes of it as lines of JSON on stdout. No ROS.
+"""The identification as a program: a job in JSON on stdin, progress and result as JSON lines on stdout. No ROS.
 
-It is a process of its own because numba and numpy hold the interpreter for long, and a node must answer.
+It is a process of its own: numba and numpy block the interpreter for long, and a node must answer.
 """
 
 import json
@@ -20,7 +20,7 @@ from pneumo_ros.reading.read import ReadOptions, read_runs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import refit
 
-NICE = 5  # whoever controls something comes first
+NICE = 5  # control loops come first
 PARTS = (0.0, 0.2, 1.0)  # of the progress: reading, identifying
 PARTS_WITH_REFIT = (0.0, 0.1, 0.4, 1.0)
 
@@ -61,7 +61,7 @@ def plain(value: Any) -> Any:
 def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
     """The result of a job: `machine` and `name` of the model, `files` with effects, `bags`, `whole_model`.
 
-    `axis` and `joint_name` choose in recordings of several, else they are empty. Raises DataError when no
+    `axis` and `joint_name` choose where a recording holds several; otherwise they are empty. Raises DataError when no
     recording can be used, and what identification raises.
     """
     begun = time.monotonic()
@@ -94,7 +94,7 @@ def read(
 
 
 def main() -> int:
-    """Read the job, do it, write the result or why there is none."""
+    """Read the job, run it, write the result or the reason of its failure."""
     os.nice(NICE)
     report = Report()
     try:

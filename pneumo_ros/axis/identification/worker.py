@@ -58,11 +58,11 @@ class Worker:
             if not self._stopped and not {"result", "failed"} & last.keys():
                 complaints.seek(0)
                 words = complaints.read().strip().splitlines()
-                said = words[-1] if words else "without a word"
+                said = words[-1] if words else "it wrote nothing"
                 self._told({"failed": f"the work ended unexpectedly with exit code {code}: {said}"})
 
     def _listen(self, process: "subprocess.Popen[str]", job: str) -> Line:
-        """Give the job, hear all; the last line."""
+        """Send the job and pass on every line; returns the last one."""
         assert process.stdin is not None
         assert process.stdout is not None
         last: Line = {}

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from pneumo_ros.plant import Model
 
-# Numba holds the interpreter for most of its seconds; another process fills the kernel cache, from which loading takes
-# milliseconds. One sample and its outputs need all that a simulation needs of a kernel.
+# Numba blocks the interpreter for seconds, so another process compiles into the kernel cache; loading from it takes
+# milliseconds. One sample and its outputs use every function of the kernel that a simulation uses.
 _PROGRAM = """
 import json, sys
 from pneumo_ros.plant import Library, model_from_dict
@@ -24,7 +24,7 @@ class Compiler:
     """Compiles models one after the other in a thread and a process of its own; only the last one asked for counts."""
 
     def __init__(self, files: Iterable[str | Path], done: Callable[[Model, Exception | None], None]) -> None:
-        """`files` are the user's effect files; `done` is called in the thread with a model whose kernel is at hand,
+        """`files` are the user's effect files; `done` is called in the thread with a model whose kernel is ready,
         or with the reason why there is none.
         """
         self._files, self._done = [str(path) for path in files], done
@@ -38,7 +38,7 @@ class Compiler:
         return self._thread is not None
 
     def compile(self, model: Model) -> None:
-        """Begin; returns at once."""
+        """Start compiling; returns at once."""
         with self._lock:
             self._wanted = model
             if self._thread is None:
@@ -62,6 +62,6 @@ class Compiler:
         subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
         try:
             model.outputs(model.simulate([0.0], model.state()))
-        except Exception as failure:  # of numba, about the text of a user's effect: no class to name here
+        except Exception as failure:  # numba's, about a user's effect: it can be of any class
             return failure
         return None

@@ -1,4 +1,4 @@
-"""What the simulator says about itself on /diagnostics."""
+"""What the simulator reports on /diagnostics."""
 
 import time
 
@@ -12,7 +12,7 @@ class Monitor:
     """Turns counts into health: rates since the last look, warnings when a count has grown since."""
 
     def __init__(self, simulation: Simulation, pace: Ticker | Lockstep) -> None:
-        """`pace` is what makes the simulation go."""
+        """`pace` advances the simulation."""
         self._simulation, self._pace = simulation, pace
         self._at, self._counts = time.monotonic(), self._read()
 

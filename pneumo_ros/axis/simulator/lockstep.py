@@ -4,13 +4,13 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-SETTLE = 0.3  # s after both sides are matched here until they are so at the controller, too
+SETTLE = 0.3  # s from the match seen here until the controller sees it, too
 WATCH = 0.05  # s between two calls of `watch`
-MISSES = 3  # commands in a row that did not come: nobody is there, though the middleware takes long to notice
+MISSES = 3  # missing commands in a row: the controller is gone, which the middleware notices late
 
 
 class Log(Protocol):
-    """Where sentences go: the logger of a node."""
+    """The logger of a node."""
 
     def info(self, message: str, /) -> object:
         """What has changed."""
@@ -23,8 +23,8 @@ class Lockstep:
     """Runs `send` (publish the present sample) and `advance` (one sample) in turns with the commands.
 
     Everything happens in callbacks of the executor: a command causes the next sample. Without a controller the plant
-    runs on freely. A command that does not come within the timeout is counted, said, and not waited for; after three in
-    a row the controller counts as gone until it sends a command.
+    runs on freely. A command that does not come within the timeout is counted and logged, and the plant goes on; after
+    three in a row the controller counts as gone until it sends a command.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class Lockstep:
         timeout: float,
     ) -> None:
         """`advance` returns whether the state is still finite, `matched` whether there is a controller; `soon` calls a
-        function after whatever else waits to be served. Times in s of the wall.
+        function after all that already waits. Times are wall time [s].
         """
         self._advance, self._send, self._matched, self._paused = advance, send, matched, paused
         self._call_soon, self._log = soon, log
@@ -78,7 +78,7 @@ class Lockstep:
             self._soon()
 
     def watch(self) -> None:
-        """Begin when there is a controller, and wait for no command for ever; call it every WATCH seconds."""
+        """Start when there is a controller, and stop waiting for a late command; call it every WATCH seconds."""
         if not self.started:
             self._start_when_met()
             return

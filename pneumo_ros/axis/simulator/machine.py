@@ -1,4 +1,4 @@
-"""The machine as ROS parameters say it: a whole machine file, or changes to one."""
+"""The machine that ROS parameters describe: a whole machine file, or changes to one."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -13,7 +13,7 @@ from pneumo_ros.plant.library import FRAME
 def machine_from_parameters(base: str, given: Mapping[str, Any], effects_files: Iterable[str | Path] = ()) -> Model:
     """The model that the `given` parameters describe.
 
-    A whole machine file (effects and sections piston, air, chambers) stands alone, and nothing may be missing in it.
+    A whole machine file (effects and sections piston, air, chambers) is used alone, and must be complete.
     Otherwise `given` changes the machine file `base`. Raises UsageError with the nearest names.
     """
     values, files = dict(given), tuple(effects_files)

@@ -1,4 +1,4 @@
-"""What the sensors make of the state: noise of a given seed, and quantisation."""
+"""The sensors: noise of a given seed, and quantisation."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class Reading(NamedTuple):
 class Sensors:
     """Gaussian noise (standard deviations [m], [Pa]) and quantisation (steps [m], [Pa], 0: none).
 
-    Every reading uses up the same number of draws, so that a change of one level does not change the others' noise.
+    Every reading uses the same number of draws: a change of one level leaves the noise of the others as it is.
     """
 
     noise_position: float = 0.0
@@ -40,7 +40,7 @@ class Sensors:
         self._draws: list[list[float]] = []
 
     def read(self, true: Reading) -> Reading:
-        """The reading of a true state; the velocity is passed on as it is, if at all."""
+        """The reading of a true state; the velocity, if published, has no error."""
         if not self._draws:
             self._draws = self._random.standard_normal((_BLOCK, 3)).tolist()
         e_y, e_a, e_b = self._draws.pop()

@@ -28,8 +28,8 @@ FIXED = (
 
 LIVE = (
     Setting("command_timeout", 0.1, "simulated age of a command at which the valve closes; 0: never", "s", 0.0, 1e6),
-    Setting("max_voltage", 10.0, "commands beyond are clipped", "V", 0.0, 100.0),
-    Setting("publish_velocity", True, "fill the velocity of joint_states, which a position sensor cannot"),
+    Setting("max_voltage", 10.0, "commands beyond it are clipped", "V", 0.0, 100.0),
+    Setting("publish_velocity", True, "fill the velocity of joint_states; position sensors do not measure it"),
     Setting("noise_position", 0.0, "standard deviation of the position noise", "m", 0.0, 0.1),
     Setting("noise_pressure", 0.0, "standard deviation of the pressure noise", "Pa", 0.0, 1e5),
     Setting("quantisation_position", 0.0, "step of the position sensor; 0: none", "m", 0.0, 0.1),

@@ -36,7 +36,7 @@ class Simulation:
         self._observe_model()
 
     def _observe_model(self) -> None:
-        """Prepare what reading the sensors needs of the present model."""
+        """Prepare the reading of the sensors for the present model."""
         model, observed = self.plant.model, self.plant.model.composition.observed
         self._values, self._observe, self._row = model.values, model.kernel.observe, self.plant.state[np.newaxis]
         self._seen = np.empty((1, len(observed)))
@@ -52,9 +52,9 @@ class Simulation:
         self._read()
 
     def advance(self, begin: int, part: float) -> None:
-        """One sample; it began at `begin` [ns] on the clock of arrivals, where its parts took `part` [ns] each.
+        """One sample, which began at `begin` [ns] on the clock of arrivals; each of its parts took `part` [ns].
 
-        Raises NumericalError when the state leaves the finite numbers; it then is the last good one.
+        Raises NumericalError when the state is no longer finite; the state then is the last finite one.
         """
         plant = self.plant
         self.valve.hold(self._held, begin, part, plant.time, plant.step)
@@ -63,7 +63,7 @@ class Simulation:
         self._read()
 
     def _read(self) -> None:
-        """What the sensors see of the state, kept in `reading`."""
+        """Read the sensors into `reading`."""
         self._now[0] = self.plant.time
         self._observe(self._row, self._values, self._held[-1:], self._now, self._seen)
         seen = self._seen[0].tolist()
@@ -72,8 +72,8 @@ class Simulation:
 
     @property
     def clock(self) -> int:
-        """Simulated time [ns] for stamps: it goes on at a reset, and begins one sample after 0, because 0 means in ROS
-        that there is no time.
+        """Simulated time [ns] for stamps: it continues over a reset, and begins one sample after 0, because 0 in ROS
+        means no time.
         """
         return round((self.total + 1) * 1e9 / self.rate)
 

@@ -6,7 +6,7 @@ _STEP = 10_000_000  # ns; a larger change of the system clock was set, not slewe
 
 
 class WallStamps:
-    """Wall time [ns] of moments on CLOCK_MONOTONIC, so even as these; follows the system clock when it is set."""
+    """Wall time [ns] of moments on CLOCK_MONOTONIC, as even as these; follows the system clock when it is set."""
 
     def __init__(self) -> None:
         self._offset = self._measure()
@@ -23,7 +23,7 @@ class WallStamps:
 
     @staticmethod
     def _measure() -> int:
-        """Wall clock minus monotonic clock; the tightest of three readings, as any may be interrupted."""
+        """Wall clock minus monotonic clock; the fastest of three readings, as any may be interrupted."""
         readings = []
         for _ in range(3):
             before, wall, after = time.monotonic_ns(), time.time_ns(), time.monotonic_ns()

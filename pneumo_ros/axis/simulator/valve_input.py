@@ -1,4 +1,4 @@
-"""The valve command as it comes in: refused, clipped, timed within a sample, and forgotten when it grows old."""
+"""The valve command as it comes in: refused, clipped, timed within a sample, and dropped when it is too old."""
 
 import math
 from collections import deque
@@ -26,7 +26,7 @@ class ValveInput:
         self._arrived.clear()
 
     def accept(self, voltage: float, arrival: int) -> bool:
-        """Take a command [V] that arrived at `arrival` [ns]; False if it is not finite. That and clipping count."""
+        """Take a command [V] that arrived at `arrival` [ns]; False if it is not finite. Both it and clipping count."""
         if not math.isfinite(voltage):
             self.refused += 1
             return False

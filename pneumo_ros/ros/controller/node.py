@@ -41,12 +41,12 @@ CHECK = 0.02  # s between looks for silence
 
 
 class Controller(AxisNode):
-    """Follows what it is sent or a built-in reference; sends 0 V when measurements stay away, and at the end."""
+    """Follows what it is sent or a built-in reference; sends 0 V when measurements are missing, and at the end."""
 
     def __init__(
         self, tolerated: Callable[[str], bool] = lambda name: False, clock: Callable[[], int] | None = None
     ) -> None:
-        """`clock` [ns] measures how long measurements stay away; None: simulated time if used, else the steady clock.
+        """`clock` [ns] measures how long measurements are missing; None: simulated time if used, else the steady clock.
 
         Raises UsageError for an unknown parameter, unless it is `tolerated` or a machine file's, for a bad value, and
         where there is another controller.
