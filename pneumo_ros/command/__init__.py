@@ -1,4 +1,4 @@
-"""`pneumo`: what its verbs share: arguments, console, texts and JSON of results. No physics.
+"""What the verbs of `pneumo` share: arguments, console, texts and JSON of results. No physics.
 
 Whatever is slow to import or not always installed (numpy, numba, rosbags) is imported inside functions, so that help
 and misspelt names are answered at once. `main.VERBS` names the verbs, which lie in `verb`.

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def adding_dict(found: "Adding") -> dict[str, Any]:
-    """Errors are over windows of one second; `held_out` says whether on runs that took no part in the fit."""
+    """Errors are over windows of one second; `held_out` says whether these runs were not fitted."""
     from pneumo_ros.compare.moved import estimates_dict
     from pneumo_ros.diagnose.diagnosis import noise_levels, signal_errors
 
@@ -49,7 +49,7 @@ def _parameters(effect: str, found: "Adding") -> dict[str, Any]:
 
 
 def _base(found: "Adding") -> "dict[str, Estimate]":
-    """Estimates of what the model had before."""
+    """Estimates of the parameters that the model had before."""
     return {n: one for n, one in found.estimates.items() if n.partition(".")[0] not in found.effects}
 
 

@@ -29,11 +29,11 @@ def text(result: Mapping[str, Any]) -> str:
 
 
 def headline(result: Mapping[str, Any]) -> str:
-    """What became of the error."""
+    """How the error changed."""
     names = listed([one["effect"] for one in result["added"]])
     given, before, after = (step["error"] for step in result["course"])
     where = "held out" if result["held_out"] else "that were fitted too (judge by others: --holdout BAG...)"
-    pays = "" if after < before else " It does NOT pay: refitting alone predicts as well."
+    pays = "" if after < before else " It does NOT help: refitting alone predicts as well."
     return (
         f"Added {names} to '{result['model']}'. On {counted(len(result['judged']), 'recording')} {where}, the error "
         f"over {result['horizon_s']:g} s is {times(given)} the noise floor as given, {times(before)} refitted, "
@@ -42,7 +42,7 @@ def headline(result: Mapping[str, Any]) -> str:
 
 
 def _table(result: Mapping[str, Any]) -> str:
-    """The table of `diagnose`, without what only a search knows."""
+    """The table of `diagnose`, without the columns of a search."""
     added = [one | {"holdout_error_before": one["error_before"], "holdout_error_after": one["error_after"]}
              for one in result["added"]]  # fmt: skip
     return table_text(additions_table(additions(added), "held-out error" if result["held_out"] else "error"))
@@ -62,4 +62,4 @@ def _lacking(result: Mapping[str, Any]) -> str:
     missing = undetermined(result)
     if not missing:
         return ""
-    return f"Not determined by these recordings: {listed(missing)}; see: pneumo effects NAME for what shows it."
+    return f"Not determined by these recordings: {listed(missing)}; see how it is recognised: pneumo effects NAME"

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse that raises UsageError, accepts no abbreviated options and answers a misspelt one with its nearest."""
+    """argparse that raises UsageError, accepts no abbreviated options and names the nearest for a misspelt one."""
 
     def __init__(self, prog: str, description: str | None, epilog: str | None = None) -> None:
         super().__init__(
@@ -29,7 +29,7 @@ class Parser(argparse.ArgumentParser):
         raise UsageError(f"{message} (see: {self.prog} --help)")
 
     def parse_strictly(self, arguments: Sequence[str]) -> argparse.Namespace:
-        """Parse, and refuse what is not understood."""
+        """Parse, and refuse unknown arguments."""
         options, extra = self.parse_known_args(arguments)
         if extra:
             self.error(self._unknown(extra[0]))
@@ -44,7 +44,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None:
-    """--namespace, --joint and --read-as: which axis is meant, and how to read it; if `cut`, --cut: what of it."""
+    """--namespace, --joint and --read-as: which axis to read, and how; if `cut`, also --cut: what to leave out."""
     parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
     parser.add_argument("--joint", metavar="NAME", help="the piston in joint_states, where these hold several joints")
     parser.add_argument(
@@ -92,7 +92,7 @@ def add_executor(parser: argparse.ArgumentParser) -> None:
 
 
 def model_for_workers(options: argparse.Namespace) -> tuple[str, tuple[str, ...]]:
-    """--model and --effects as another process finds them, wherever it works: a file or shipped name, and files."""
+    """--model and --effects for a process in another folder: absolute path or shipped name, and absolute paths."""
     own = Path(options.model)
     model = str(own.resolve()) if own.is_file() else str(options.model)
     return model, tuple(str(Path(path).resolve()) for path in options.effects)

@@ -1,4 +1,4 @@
-"""Runs a programme on a live plant: a node in its own process does it and reports what happens line by line."""
+"""Runs a programme on a live plant: a node in its own process runs it and reports line by line."""
 
 import json
 import os
@@ -26,8 +26,8 @@ def conduct(
 ) -> tuple[int, dict[str, Any]]:
     """Run it with the node's `settings` in the plant's namespace; exit code, and the node's summary.
 
-    SIGINT and SIGTERM are passed on: the node closes the valve first. It does so too when this process is killed, for
-    then its standard input ends. Raises PneumoError when the node ends without a word.
+    SIGINT and SIGTERM are passed on: the node closes the valve first. It also does so when this process is killed,
+    because its standard input then ends. Raises PneumoError when the node ends without a summary.
     """
     from pneumo_ros.experiment.programme_file import programme_text
 
@@ -45,12 +45,12 @@ def conduct(
             code = process.wait()
         if last is None:
             words = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-            raise PneumoError(f"the experiment ended with exit code {code}: {words[-1] if words else 'without a word'}")
+            raise PneumoError(f"the experiment ended with exit code {code}: {words[-1] if words else 'no output'}")
     return code, last
 
 
 def _listen(process: "subprocess.Popen[str]", console: Console) -> dict[str, Any] | None:
-    """Show events as they come; the summary that comes last, None if it did not."""
+    """Show events as they come; returns the summary that comes last, None without one."""
     assert process.stdout is not None
     for line in process.stdout:
         event = json.loads(line)
@@ -71,7 +71,7 @@ def _listen(process: "subprocess.Popen[str]", console: Console) -> dict[str, Any
 
 @contextmanager
 def _passing_on(process: "subprocess.Popen[str]") -> Iterator[None]:
-    """While the block lasts, SIGINT and SIGTERM are for the process, whose end they bring about."""
+    """Pass SIGINT and SIGTERM on to the process during the block; after it, the process has ended."""
     numbers = (signal.SIGINT, signal.SIGTERM)
     before = {number: signal.signal(number, lambda got, _: process.send_signal(got)) for number in numbers}
     try:

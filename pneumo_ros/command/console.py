@@ -1,4 +1,4 @@
-"""What a verb says: results on stdout, messages and progress on stderr, JSON where it is wanted."""
+"""Output of a verb: results on stdout, messages and progress on stderr, JSON where requested."""
 
 import json
 import logging
@@ -30,7 +30,7 @@ class Console:
         self._listen()
 
     def _listen(self) -> None:
-        """Show what the package logs (a kernel being compiled, say) beside the other messages."""
+        """Show the log of the package, such as the compilation of a kernel, beside the other messages."""
         logger = logging.getLogger("pneumo_ros")
         logger.handlers = [logging.StreamHandler(sys.stderr)]
         logger.setLevel(logging.ERROR if self.quiet else logging.INFO)
@@ -50,7 +50,7 @@ class Console:
         return Progress(title, None if self.quiet else sys.stderr)
 
     def json(self, data: dict[str, Any]) -> None:
-        """The results for a program, if one asked for them; numbers that are not finite become null."""
+        """The results for a program, if requested; numbers that are not finite become null."""
         if self.json_target is None:
             return
         text = json.dumps(plain(data), indent=1, allow_nan=False) + "\n"
@@ -74,7 +74,7 @@ def plain(value: Any) -> Any:
         return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
         return [plain(inner) for inner in value]
-    if hasattr(value, "tolist"):  # numpy, which need not be imported to be recognised
+    if hasattr(value, "tolist"):  # numpy, recognised without importing it
         return plain(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
@@ -103,7 +103,7 @@ def table_text(table: "Table | None") -> str:
 class Progress:
     """Call it with the fraction done, 0 to 1, and what is being done.
 
-    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both show how long it may still take.
+    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both show the estimated time left.
     """
 
     WAIT = 0.5  # s; work that ends sooner shows nothing
@@ -121,7 +121,7 @@ class Progress:
         self.clear()
 
     def clear(self) -> None:
-        """Take the moving line away, so that something else can be said."""
+        """Remove the moving line, so that something else can be printed."""
         if self.stream is not None and self.moving and self._drawn:
             self.stream.write("\r\x1b[K")
             self.stream.flush()

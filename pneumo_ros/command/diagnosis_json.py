@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from pneumo_ros.shooting.refit import Estimate
 
 SCHEMA_VERSION = 1
-KNOWN = 0.5  # of the standard deviation known before: a fit that leaves more of it has determined nothing
+KNOWN = 0.5  # times the prior standard deviation: a fit with a larger one has determined nothing
 
 
 def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", experiment: str) -> dict[str, Any]:
     """Numbers, texts and arrays by the names programs rely on; keys are only ever added.
 
-    estimates: of all that is free in the final model; experiment: what to record next, "" for nothing.
+    estimates: of all free parameters of the final model; experiment: what to record next, "" for nothing.
     """
     from pneumo_ros.compare.moved import estimates_dict
 
@@ -53,7 +53,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
 
 
 def value_dict(value: float, std: float, known: "Parameter") -> dict[str, Any]:
-    """A parameter with its 95 % interval, meaning and allowed range; what is infinite becomes null in JSON."""
+    """A parameter with its 95 % interval, meaning and allowed range; infinite numbers become null in JSON."""
     return {
         "value": value, "std": std, "unit": known.unit, "low": value - NORMAL * std, "high": value + NORMAL * std,
         "meaning": known.meaning, "least": known.low, "most": known.high,
@@ -102,7 +102,7 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
 
 
 def _outdone(name: str, added: list[str], rivals: list[str], model: "Model") -> list[str]:
-    """Why an effect without objections was not added: another one was."""
+    """Why an effect without objections was not added: another effect was."""
     if name in added or rivals or not added:
         return []
     simpler = [other for other in added if other in model.library.find(name).contains]
@@ -117,7 +117,7 @@ def _tried(one: "Ranked", outcome: "Outcome") -> "Candidate":
 
 
 def _size_interval(candidate: "Candidate") -> tuple[float, float]:
-    """95 % interval of the largest size in usual ones; NaN where the fit has no covariance."""
+    """95 % interval of the largest size over its usual size; NaN where the fit has no covariance."""
     from pneumo_ros.diagnose.judging import sizes
 
     h = candidate.hypothesis
@@ -146,7 +146,7 @@ def _fitted(candidate: "Candidate", model: "Model") -> dict[str, Any]:
 
 
 def _unexplained(left: "Unexplained") -> dict[str, Any]:
-    """Where bins are empty, nothing is drawn."""
+    """Empty bins are left out."""
     rows = zip(left.at, left.mean, left.low, left.high, left.noise, left.seconds, strict=True)
     kept = [tuple(map(float, row)) for row in rows if all(map(math.isfinite, row[:2]))]
     at, mean, low, high, noise, seconds = (list(column) for column in zip(*kept, strict=True)) if kept else [[]] * 6
@@ -160,6 +160,6 @@ def _unexplained(left: "Unexplained") -> dict[str, Any]:
 
 
 def _moved(moved: "Moved") -> dict[str, Any]:
-    """Parameters of the model itself that are others on held-out recordings."""
+    """Parameters of the model itself that differ on held-out recordings."""
     values = {n: {"before": one, "after": two, "unit": unit} for n, (one, two, unit) in moved.parameters.items()}
     return {"share": moved.share, "parameters": values}

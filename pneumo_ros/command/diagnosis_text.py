@@ -29,6 +29,6 @@ def text(result: Mapping[str, Any]) -> str:
 
 
 def added(said: DiagnosisWords) -> str:
-    """A row for each parameter of what was added, and what it cannot be distinguished from."""
+    """A row for each parameter of the added effects, and the effects they cannot be distinguished from."""
     rivals = [one.rivals for one in said.added if one.rivals]
     return "\n".join([table_text(additions_table(said.added)), *rivals])

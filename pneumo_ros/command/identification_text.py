@@ -1,4 +1,4 @@
-"""What `pneumo identify` found, as text: the table, what is not determined, and which stretches it rests on."""
+"""What `pneumo identify` found, as text: the table, what is not determined, and which stretches were used."""
 
 import math
 import re
@@ -20,7 +20,7 @@ def text(result: dict[str, Any], verbose: bool) -> str:
 
 
 def headline(result: dict[str, Any]) -> str:
-    """What the identification rests on, and the noise of the method."""
+    """The windows that are used, and the noise of the method."""
     points, runs = result["map"]["points"], result["runs"]
     windows, used = sum(run["windows"] for run in runs), len(points["velocity"])
     span = result["map"]["window_s"]
@@ -28,8 +28,8 @@ def headline(result: dict[str, Any]) -> str:
     return (
         f"{used} of {windows} windows of {span:g} s in {count(len(runs), 'run')} are steady; "
         f"{count(len(result['breakaways']), 'breakaway')}.\n"
-        f"Velocities are slopes of the position over {span:g} s; of the sensors' noise they keep "
-        f"{number(1e6 * speed, 2)} um/s, the forces {number(force, 2)} N (medians)."
+        f"Velocities are slopes of the position over {span:g} s; sensor noise gives them "
+        f"an error of {number(1e6 * speed, 2)} um/s, and the forces one of {number(force, 2)} N (medians)."
     )
 
 
@@ -52,7 +52,7 @@ def _interval(one: dict[str, Any]) -> tuple[str, str]:
 
 
 def sentences(result: dict[str, Any]) -> list[str]:
-    """What is not determined, what is known only together, and whether the map has the shape of the model."""
+    """What is not determined, what is known only together, and whether the static map fits."""
     said = [
         f"Not determined: {name}, which keeps {_amount(result['parameters'][name])}: {why}."
         for name, why in result["undetermined"].items()
@@ -77,19 +77,19 @@ def _amount(one: dict[str, Any]) -> str:
 
 
 def map_sentence(found: dict[str, Any]) -> str:
-    """Whether noise explains what the static map leaves."""
+    """Whether noise explains the residuals of the static map."""
     share, ratio = number(100.0 * found["share_of_force"], 2), number(found["ratio_to_noise"], 2)
     size = f"{number(found['residual_rms_n'])} N rms, {share} % of the force and {ratio} x the noise"
     if found["explained_by_noise"]:
         return f"The static map fits: residuals are {size}."
     if found["fits"]:
         return (
-            f"The static map fits roughly: residuals are {size}. Friction that does not repeat, or an effect that the "
-            "machine file lacks, makes the difference, and the intervals cover only the first; see: pneumo compare"
+            f"The static map fits roughly: residuals are {size}. The cause is friction that does not repeat, or an "
+            "effect that the machine file lacks; the intervals cover only the first; see: pneumo compare"
         )
     return (
-        f"The static map does NOT fit: residuals are {size}. The friction of this machine has a shape that these "
-        "parameters cannot give it, and the intervals do not cover that; see: pneumo compare"
+        f"The static map does NOT fit: residuals are {size}. These parameters cannot describe the friction of "
+        "this machine, and the intervals do not cover that; see: pneumo compare"
     )
 
 

@@ -1,4 +1,4 @@
-"""What drives a simulation: `constant:V`, `step:V@T`, `sine:V,HZ`, a CSV file, or a recording to replay."""
+"""The input of a simulation: `constant:V`, `step:V@T`, `sine:V,HZ`, a CSV file, or a recording to replay."""
 
 import math
 from collections.abc import Callable
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_FAR = 1e12  # s; farther away from zero, a double does not resolve milliseconds
+_FAR = 1e12  # s; beyond it, a double does not resolve milliseconds
 FORMS = "constant:V, step:V@T, sine:V,HZ, file.csv, or the folder or .mcap of a recording"
 
 
@@ -24,7 +24,7 @@ class Drive:
     """The valve voltage as a function of time.
 
     voltage: times (n,) in s from the start -> voltages (n,) in V, each held until the next.
-    duration: how long it lasts [s], None when it has no end of its own.
+    duration: how long it lasts [s], None without an end.
     text: what it is, for a person.
     """
 
@@ -114,7 +114,7 @@ def read_csv(path: Path) -> Drive:
     time -= time[0]
 
     def voltage(at: "Array") -> "Array":
-        tolerance = 1e-9  # s; sample k starts at k dt in whichever way its digits round
+        tolerance = 1e-9  # s, for the rounding of k dt, the start of sample k
         held: Array = volts[np.searchsorted(time, at + tolerance, side="right") - 1]
         return held
 

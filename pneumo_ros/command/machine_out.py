@@ -13,7 +13,7 @@ def add_machine_file(parser: argparse.ArgumentParser, what: str, *, required: bo
 
 
 def check_machine_file(options: argparse.Namespace) -> None:
-    """UsageError, before any work, where --out cannot be written or holds a file that nobody gave away."""
+    """UsageError, before any work, where --out cannot be written, or exists without --overwrite."""
     if options.out is None:
         if options.overwrite:
             raise UsageError("--overwrite goes with --out MODEL")

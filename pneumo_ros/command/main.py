@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of stdout left, as `head` does; nothing more can be said there
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
-    except OSError as error:  # what the system says no to: a folder that may not be read, a disk that fails
+    except OSError as error:  # refused by the system: a folder that may not be read, a disk that fails
         where = f"{error.filename}: " if error.filename else ""
         return _fail(f"{where}{error.strerror or error}", DataError.exit_code)
     except KeyboardInterrupt:

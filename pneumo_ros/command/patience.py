@@ -1,4 +1,4 @@
-"""Work that a first Ctrl-C does not stop, because it makes what is there usable."""
+"""Work that a first Ctrl-C does not stop, because it completes the results so far."""
 
 import signal
 import threading
@@ -9,7 +9,7 @@ from types import FrameType
 
 @contextmanager
 def finishing(say: Callable[[], None]) -> Iterator[None]:
-    """Inside, the first Ctrl-C is answered by `say`, the second one interrupts."""
+    """Inside the block, the first Ctrl-C calls `say`, the second one interrupts."""
     if threading.current_thread() is not threading.main_thread():  # signals go to the main thread
         yield
         return

@@ -46,7 +46,7 @@ class Fleet:
             )
 
     def wait(self, seconds: float) -> None:
-        """Let time pass; PneumoError, with the last words of its log, as soon as a process has ended."""
+        """Let time pass; PneumoError, with the last line of its log, as soon as a process has ended."""
         end = time.monotonic() + seconds
         self.check()
         while (left := end - time.monotonic()) > 0.0:
@@ -60,7 +60,7 @@ class Fleet:
                 raise PneumoError(f"the {name} ended with exit code {process.returncode}: {self.last_words(name)}")
 
     def stop(self) -> dict[str, int]:
-        """End all with SIGINT, the last one first; exit codes by name. Who does not end within 10 s is killed."""
+        """End all with SIGINT, the last one first; exit codes by name. One that does not end within 10 s is killed."""
         for process in reversed(self._processes.values()):
             _end(process)
         codes = {name: process.returncode for name, process in self._processes.items()}
@@ -70,7 +70,7 @@ class Fleet:
     def last_words(self, name: str) -> str:
         """The last line a process wrote, and where to read the others."""
         lines = self._log(name).read_text(encoding="utf-8", errors="replace").strip().splitlines()
-        return f"{lines[-1] if lines else 'it said nothing'} (all it said: {self._log(name)})"
+        return f"{lines[-1] if lines else 'no output'} (its log: {self._log(name)})"
 
     def _log(self, name: str) -> Path:
         return self.logs / f"{name}.log"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
     """The recordings named, in order, and whether each came out of a folder of recordings.
 
-    What is named twice is taken once.
+    A recording named twice is taken once.
     """
     from pneumo_ros.records.folders import recordings_in
 

@@ -66,7 +66,7 @@ def _write_figures(report: "Report", path: Path, console: Console) -> None:
 
 
 def prepare_report(options: argparse.Namespace) -> ReportJob:
-    """Check before any work that what the options ask for can be written, and that its libraries are there."""
+    """Check before any work that report and figures can be written, and that their libraries are installed."""
     if options.report is not None:
         require_libraries(("plotly",))
     if options.figures is not None:

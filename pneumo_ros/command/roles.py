@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pneumo_ros.plant import Model
     from pneumo_ros.runs.run import Run
 
-_KEPT = "hold"  # recordings of such names are meant to be held out
+_KEPT = "hold"  # names of recordings to hold out begin with it
 
 
 def add_holdout(parser: argparse.ArgumentParser, why: str) -> None:
@@ -25,8 +25,8 @@ def add_holdout(parser: argparse.ArgumentParser, why: str) -> None:
 def roles(options: argparse.Namespace, console: Console) -> tuple[dict[str, bool], dict[str, bool]]:
     """Recordings to fit and to judge by, as `expanded` gives them; also set as `bags` and `holdout` of `options`.
 
-    What is held out by name is taken out of a folder that holds it too. Raises UsageError for a recording in both
-    roles, and when none is left to fit.
+    A recording of a folder that is held out by name is not fitted. Raises UsageError for a recording in both
+    roles, and when no recording is left to fit.
     """
     train, held = expanded(options.bags, console), expanded(options.holdout, console)
     twice = {Path(path).resolve(): path for path in held}
@@ -69,7 +69,7 @@ def read_roles(
     train: dict[str, bool], held: dict[str, bool], options: argparse.Namespace, console: Console, model: "Model"
 ) -> "tuple[list[Run], list[Run], dict[str, str]]":
     """The runs to fit, those to judge by, and what was passed over, as `read_expanded`; UsageError for copies."""
-    import numpy as np  # slow; --help does without
+    import numpy as np  # slow; --help does not need it
 
     fitted, passed = read_expanded(train, options, console, model)
     judging, more = read_expanded(held, options, console, model) if held else ([], {})

@@ -1,4 +1,4 @@
-"""What `pneumo experiment --separate` says: every experiment, and how well it should distinguish two effects."""
+"""Output of `pneumo experiment --separate`: every experiment, and how well it should distinguish two effects."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def separation_text(ranked: "Sequence[Separation]", effects: Sequence[str], noise: "Noise") -> str:
-    """The ranked table, and what its numbers are."""
+    """The ranked table, and the meaning of its numbers."""
     from pneumo_ros.experiment.separate import CLEAR, NOTHING
 
     first, second = effects
@@ -23,9 +23,9 @@ def separation_text(ranked: "Sequence[Separation]", effects: Sequence[str], nois
     lines += [f"{one.offer.name}: {one.offer.prepare}" for one in ranked if one.offer.prepare and not one.refused]
     lines += [f"{one.offer.name} is not offered: in the rehearsal, {one.refused}" for one in ranked if one.refused]
     lines.append(
-        f"Noise deviations that remain when one effect has made the recording and the model with the other is refitted "
-        f"to it ({1e6 * noise.position:g} um and {noise.pressure:g} Pa at 1 kHz); separation is the smaller of both. "
-        f"Above {CLEAR:g} is clear, below {NOTHING:g} is nothing."
+        f"Misfit in noise deviations when one effect made the recording, and the model with the other was refitted to "
+        f"it ({1e6 * noise.position:g} um and {noise.pressure:g} Pa at 1 kHz); separation is the smaller of both. "
+        f"Above {CLEAR:g} is clear, below {NOTHING:g} is useless."
     )
     return "\n".join(lines)
 

@@ -1,4 +1,4 @@
-"""What to record next: to distinguish an added effect from its rivals, or to see more of what nothing explains."""
+"""What to record next: to distinguish an added effect from its rivals, or to see more of an unexplained residual."""
 
 from typing import TYPE_CHECKING
 
@@ -35,7 +35,7 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Co
     try:
         with console.progress("Choosing an experiment") as progress:
             ranked = separate(outcome.model, added.effect, rival, progress=progress)
-    except PneumoError as problem:  # the diagnosis stands all the same
+    except PneumoError as problem:  # the diagnosis is valid without it
         return f"No experiment that distinguishes {added.effect} from {rival} could be simulated: {problem}."
     except KeyboardInterrupt:
         return ""
@@ -44,6 +44,6 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Co
 
 def _showing(left: "Unexplained", machine: str) -> str:
     return (
-        f"To see more of what remains in {EQUATIONS[left.equation][0]}, of which {VARIABLES[left.against][0]} explains "
-        f"most: pneumo experiment {SHOWING[left.against]} --model {machine}."
+        f"To see more of the residual in {EQUATIONS[left.equation][0]}, which {VARIABLES[left.against][0]} explains "
+        f"best: pneumo experiment {SHOWING[left.against]} --model {machine}."
     )

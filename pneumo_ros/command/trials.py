@@ -1,4 +1,4 @@
-"""What a control law is tuned on: a sine and moves, on the machine and on a harsher one."""
+"""Trials to tune a control law: a sine and moves, on the machine and on a harsher one."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 SAMPLE_TIME = 1e-3  # s
 AMPLITUDE, STEP = 0.15, 0.03  # of the stroke: 0.3 m and 60 mm of the default machine
-SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of what the machine does at full voltage
-MOVE_FORCE = 0.3  # greatest force that accelerates, of what the supply makes in the smaller chamber
-HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass of the other machine that the gains must suit
+SINE_SPEED, MOVE_SPEED = 0.64, 0.77  # greatest speeds, of the machine's speed at full voltage
+MOVE_FORCE = 0.3  # greatest accelerating force, of the force of the supply on the smaller area
+HARSHER, HEAVIER = 1.2, 2.0  # times friction and mass, of the harsher machine
 SPOOL = "valve_spool_dynamics"
 REACH = 0.45  # of the stroke, to either side
-SLOWEST = 1e-3  # m/s, top speed of a machine worth tuning for
+SLOWEST = 1e-3  # m/s; a machine with a lower top speed is refused
 HOLD = 4.0  # s after each move
 RUN_UP = 0.2  # of a period of the sine, not judged
 JUDGED = 8.0  # s of the sine at least, in whole periods
@@ -41,7 +41,7 @@ class Task:
 def task_for(
     model: "Model", amplitude: float | None = None, frequency: float | None = None, step: float | None = None
 ) -> Task:
-    """What is not given follows from stroke and speed of the machine.
+    """Values that are not given follow from stroke and speed of the machine.
 
     Raises UsageError for motions that leave the stroke, and for a machine that hardly moves.
     """
@@ -68,7 +68,7 @@ def _duration(model: "Model", way: float, top: float) -> float:
 
 
 def top_speed(model: "Model", voltage: float = 10.0) -> float:
-    """Speed [m/s] that the machine reaches at +-`voltage` [V], of both the smaller, from the far end of its stroke."""
+    """Speed [m/s] that the machine reaches at +-`voltage` [V] from the far end of its stroke; the smaller of both."""
     speeds = []
     for sign in (1.0, -1.0):
         begin = begin_at(model, -0.4 * sign * model["piston.stroke"])

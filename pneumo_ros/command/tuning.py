@@ -15,7 +15,7 @@ Tuned = tuple[str, tuple[str, ...], tuple[float, float, float, float], float | N
 
 
 def costs_over(pool: Pool, start: Control, tuned: Tuned) -> Costs:
-    """What gains of `start` cost, by runs on the workers of `pool`; the same to the bit on any.
+    """Costs of gains of `start`, by runs on the workers of `pool`; bit-identical on every executor.
 
     Raises NumericalError where a run could not be made.
     """
@@ -43,7 +43,7 @@ def run_cost(tuned: Tuned, control: tuple[str, dict[str, float], float], run: in
 
 @lru_cache(1)
 def _prepared(tuned: Tuned) -> tuple[Model, list[Trial]]:
-    """Of one tuning; a worker keeps them."""
+    """Machine and trials of one tuning; a worker keeps them."""
     model, effects, task, spool = tuned
     machine = load_model(model, effects_files=effects)
     return machine, trials_of(machine, Task(*task), spool)

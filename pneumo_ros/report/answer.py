@@ -1,4 +1,4 @@
-"""The answer of a diagnosis: what was added and how well it is known, what fails before that, how to repeat it."""
+"""The answer of a diagnosis: added effects with their intervals, equations that failed before, how to repeat it."""
 
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -27,20 +27,20 @@ def badge(said: DiagnosisWords) -> Badge:
 
 
 def notes(said: DiagnosisWords) -> Html:
-    """What else the verdict rests on, as a list, and the equations before anything was added."""
+    """Notes on the verdict as a list, and the equations before anything was added."""
     listed = tag("ul", [tag("li", text) for text in (*said.notes, said.moved)], class_="notes")
     moved = worded(said.moved_table, "Parameters that the refit moved") if said.moved_table else Html()
     return Html(listed + moved + worded(said.equations))
 
 
 def answer_section(said: DiagnosisWords, outcome: "Outcome", origin: dict[str, Any]) -> Section:
-    """What was added, what to beware of, and the command line that repeats it."""
+    """The added effects, the notes, and the command line that repeats the diagnosis."""
     parts = (*(addition_section(one, outcome.model) for one in said.added), _repeat(outcome, origin))
     return Section("answer", "Answer", notes(said), parts=parts)
 
 
 def addition_section(one: AdditionWords, model: "Model | None" = None) -> Section:
-    """An added effect: how it shows (from the catalogue of `model`), its parameters with intervals, its rivals."""
+    """An added effect: how to recognise it (catalogue of `model`), its parameters with intervals, its rivals."""
     rows: list[tuple[Content, ...]] = [
         (p.meaning, tag("code", p.name), tag("strong", p.value), p.interval, p.unit) for p in one.parameters
     ]

@@ -1,4 +1,4 @@
-"""Horizontal bars, one row for each name: of traces that the page and matplotlib draw alike."""
+"""Horizontal bars, one row for each name, made of traces that the page and matplotlib both draw."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -27,5 +27,5 @@ def guide(name: str, at: float, rows: int) -> Trace:
 
 
 def labels(x: Array, rows: Rows, texts: Sequence[str]) -> Trace:
-    """What stands right of each bar."""
+    """Texts on the right of each bar."""
     return Trace("labels", "quiet", "labels", x, rows.astype(float), texts=tuple(texts))

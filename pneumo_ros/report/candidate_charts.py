@@ -1,4 +1,4 @@
-"""Candidates as bars: how sure they are on the fitted runs, and what they bring on the held-out ones."""
+"""Candidates as bars: their t on the fitted runs, and their gain on the held-out ones."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from pneumo_ros.wording.naming import sentence
 Array = NDArray[np.float64]
 
 COLOURS: dict[str, Role] = {ADDED: "first", RIVAL: "third", REFUSED: "measured"}
-_DECADES = 8.0  # from this many times the least t on, the axis is logarithmic
+_DECADES = 8.0  # above this many times the least t, the axis is logarithmic
 _ROOM = 0.2  # of the axis, for labels
 
 
@@ -32,9 +32,7 @@ def _sureness(names: Sequence[str], states: Sequence[str], t: Array) -> Chart:
     begin = 1.0 if log else 0.0
     span = (begin, highest ** (1.0 + _ROOM) if log else (1.0 + _ROOM) * highest)
     said = [f"{value:.1f}" for value in t]
-    words = (
-        f"Size over its standard deviation; dotted, the least that counts, {T_LEAST:g}. {_first(names, t, '{:.1f}')}"
-    )
+    words = f"Size over its standard deviation; dotted: the least required, {T_LEAST:g}. {_first(names, t, '{:.1f}')}"
     panel = _panel(names, states, np.full(len(t), begin), np.maximum(t, begin), said, T_LEAST)
     title = "How sure: t on the fitted recordings"
     return Chart("evidence-t", title, words, "t", (panel,), span=span, log_x=log, height=_height(names))
@@ -46,8 +44,8 @@ def _gain(names: Sequence[str], states: Sequence[str], gain: Array) -> Chart:
     span = (lowest - 0.05 * (highest - lowest) * (lowest < 0.0), highest + _ROOM * (highest - lowest))
     said = [f"{value:.1f} %" for value in gain]
     words = (
-        "Share of the squared residual, of the equation it helps most, that it removes on recordings it was not fitted "
-        f"to; dotted, the least that counts, {least:g} %. {_first(names, gain, '{:.1f} %')}"
+        "Share of the squared residual of the equation it helps most that it removes on recordings it was not fitted "
+        f"to; dotted: the least required, {least:g} %. {_first(names, gain, '{:.1f} %')}"
     )
     panel = _panel(names, states, np.zeros(len(gain)), gain, said, least)
     title = "What it brings: held-out gain"
@@ -68,7 +66,7 @@ def _panel(
 
 
 def _first(names: Sequence[str], values: Array, style: str) -> str:
-    """The two that come first."""
+    """The two candidates with the largest values."""
     order = np.argsort(-values, kind="stable")[:2]
     return sentence(", then ".join(f"{names[k]} {style.format(values[k])}" for k in order)) + "."
 

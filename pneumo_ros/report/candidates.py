@@ -1,4 +1,4 @@
-"""The evidence: every candidate that was tried, with what speaks for it, and why it was or was not added."""
+"""The evidence: every candidate that was tried, with its figures, and why it was or was not added."""
 
 from collections.abc import Sequence
 
@@ -19,7 +19,7 @@ TEXT = (
 
 
 def candidates_section(found: Sequence[CandidateWords]) -> Section:
-    """Two bar charts for the eye, and the table with the reasons."""
+    """Two bar charts, and the table with the reasons."""
     if not found:
         return Section("evidence", "Evidence", tag("p", "No candidate was tried."))
     rows = Section("candidates", "Candidate by candidate", _table(found))

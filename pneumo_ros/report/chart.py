@@ -1,4 +1,4 @@
-"""What a chart shows, without how: drawn by the browser in a page, and by matplotlib in files."""
+"""The content of a chart: the browser draws it in a page, and matplotlib in files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from pneumo_ros.report.markup import Html
 
 Array = NDArray[np.float64]
 Kind = Literal["line", "steps", "dots", "band", "area", "spans", "bars", "removed", "labels"]
-# What a trace is; each role has its colour, in light and in dark
+# What a trace shows; each role has its colour, in light and dark mode
 Role = Literal["measured", "model", "error", "free", "noise", "first", "second", "third", "quiet"]
 
 
@@ -19,10 +19,9 @@ Role = Literal["measured", "model", "error", "free", "noise", "first", "second",
 class Trace:
     """One curve: x and y (n,), in the units of the axes; a band also has its upper edge, `y_high` (n,).
 
-    NaN breaks a line; an area reaches down to zero; spans are thick horizontal lines, bars thicker ones, and what was
-    removed a pale bar; labels are `texts` right of their points. A trace with a `resolution` [unit of y] is long: it is
-    stored that finely, and thinned to what the screen can show at every zoom. Traces that start hidden are shown by a
-    click on their name.
+    NaN breaks a line; an area reaches down to zero; spans are thick horizontal lines, bars thicker ones, and
+    removed error is a pale bar; labels are `texts` right of their points. A trace with a `resolution` [unit of y] is
+    long: it is stored that finely, and thinned to the screen at every zoom. A click on its name shows a hidden trace.
     """
 
     name: str
@@ -48,7 +47,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels above each other. `words` says in a sentence what there is to see, also to those who cannot see it.
+    """Panels above each other. `words` is a sentence on what they show, also for screen readers.
 
     Charts with the same `link` zoom together.
     """
@@ -59,7 +58,7 @@ class Chart:
     x_title: str
     panels: tuple[Panel, ...]
     link: str = ""
-    span: tuple[float, float] | None = None  # of x at first; all of it, if None
+    span: tuple[float, float] | None = None  # of x at first; None: all of it
     log_x: bool = False
     height: int = 320  # pixels
     legend: bool = True
@@ -67,14 +66,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class HeatMap:
-    """Rows x columns of ratios to the noise; `href` of a row is where its cells lead."""
+    """Rows x columns of ratios to the noise; `href` of a row is the link of its cells."""
 
     name: str
     title: str
     rows: Sequence[str]
     columns: Sequence[str]
     ratios: Sequence[Sequence[float | None]]
-    texts: Sequence[Sequence[str]]  # what stands below each ratio
+    texts: Sequence[Sequence[str]]  # text below each ratio
     hrefs: Sequence[str]
 
 
@@ -94,7 +93,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Badge:
-    """The verdict in a word, with a sign and a tone of its own, so that neither colour nor letters have to be read."""
+    """The verdict in a word, with a sign and a tone: it can be read without colours, and without letters."""
 
     sign: str
     word: str

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def comparison_report(
     result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]
 ) -> Report:
-    """Everything `compare` has to show; other verbs put their sections beside these."""
+    """The whole page of `compare`; other verbs put their sections beside these."""
     return Report(
         title=f"Model '{result['model']}' against {_count(result)}",
         verdict=verdict(result),
@@ -36,7 +36,7 @@ def comparison_report(
 
 
 def comparison_sections(result: dict[str, Any], comparison: "Comparison") -> tuple[Section, ...]:
-    """Heat map first, then what fails, runs, equations, regimes and friction: of any model on any runs."""
+    """Heat map first, then what fails, runs, equations, regimes and friction, for any model and runs."""
     return (
         overview_section(result),
         findings_section(result),
@@ -69,12 +69,12 @@ def overview_section(result: dict[str, Any]) -> Section:
         texts=texts,
         hrefs=[f"#run-{k}" for k in range(1, len(result["runs"]) + 1)],
     )
-    text = "1 x means that only noise is left. A cell leads to its run."
+    text = "1 x means that only noise is left. A click on a cell opens its run."
     return Section("overview", "Overview", tag("p", text, class_="soft"), heat=heat_map)
 
 
 def findings_section(result: dict[str, Any]) -> Section:
-    """The sentences: what fails, where, following what, and when."""
+    """The sentences: what fails, in which regime, with which variable, and when."""
     items = [
         tag(
             "li",

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 def diagnosis_report(
     outcome: "Outcome", result: dict[str, Any], compared: dict[str, Any], origin: dict[str, Any]
 ) -> Report:
-    """Everything a diagnosis has to show.
+    """The whole page of a diagnosis.
 
-    result: the JSON of the verb, which the page words and holds; compared: the JSON of `outcome.after`; both of plain
+    result: the JSON of the verb, which the page shows and holds; compared: the JSON of `outcome.after`; both of plain
     types. origin: what `provenance` returns, with the command line that repeats the diagnosis.
     """
     said, runs = diagnosis(result), len(outcome.train) + len(outcome.held)
@@ -48,6 +48,6 @@ def diagnosis_report(
 
 
 def _final(outcome: "Outcome", compared: dict[str, Any]) -> tuple[Section, ...]:
-    """The page of `compare` for the final model on the held-out runs, under a name that says so."""
+    """The page of `compare` for the final model on the held-out runs, under a title of its own."""
     first, *others = comparison_sections(compared, outcome.after)
     return replace(first, title="Final model on the held-out recordings"), *others

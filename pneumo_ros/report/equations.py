@@ -1,4 +1,4 @@
-"""The residual of every equation against what it may depend on."""
+"""The residual of every equation over the variables it may depend on."""
 
 from typing import Any
 
@@ -15,11 +15,10 @@ Array = NDArray[np.float64]
 def equations_section(result: dict[str, Any]) -> Section:
     """A part for every equation; those that noise explains are folded."""
     text = (
-        "Residual along the measured signals, all runs together: what was measured minus what the model claims, a "
-        "force or flow that the model lacks. Means over bins of each variable, with their 95 % interval where at least "
-        "four separate half seconds bear one; dotted, what noise alone scatters single windows by; below, the seconds "
-        "each bin rests on. A share is what the bins of one half of the recordings predict in the other half, beyond "
-        "a constant."
+        "Residual along the measured signals, all runs together: measured minus model, a force or flow that the "
+        "model lacks. Means over bins of each variable, with their 95 % interval where a bin has at least four "
+        "separate half seconds; dotted: the scatter of single windows by noise alone; below: the seconds in each bin. "
+        "A share is the part of one half of the recordings that the bins of the other half predict, beyond a constant."
     )
     parts = tuple(_equation(name, found) for name, found in result["equations"].items())
     return Section("equations", "Equations", tag("p", text, class_="soft"), parts=parts)
@@ -67,14 +66,14 @@ def dependence_chart(equation: str, variable: str, found: dict[str, Any]) -> Cha
 
 
 def broken(begin: Array, end: Array, x: Array, *columns: Array) -> list[Array]:
-    """x and the columns with a NaN between bins that do not touch: nothing is known there."""
+    """x and the columns with a NaN between bins that do not touch, where there are no data."""
     apart = np.flatnonzero(begin[1:] > end[:-1] + 1e-9 * np.ptp(x)) + 1 if len(x) else np.empty(0, dtype=np.int64)
     middle = 0.5 * (end[apart - 1] + begin[apart])
     return [np.insert(x, apart, middle), *(np.insert(column, apart, np.nan) for column in columns)]
 
 
 def coverage(begin: Array, end: Array, seconds: Array) -> Trace:
-    """A block over every bin, nothing where none is."""
+    """A block over every bin, nothing between bins."""
     x = np.stack([begin, begin, end, end], axis=1).ravel()
     y = np.stack([0.0 * seconds, seconds, seconds, 0.0 * seconds], axis=1).ravel()
     return Trace("coverage", "quiet", "area", x, y)

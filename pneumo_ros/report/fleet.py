@@ -13,12 +13,12 @@ from pneumo_ros.report.markup import Content, Html, table, tag
 from pneumo_ros.report.origin import origin_section
 
 Array = NDArray[np.float64]
-SHOWN = 40  # machines with charts: the JSON holds all
+SHOWN = 40  # machines with charts; the JSON holds all
 PANELS = 8  # parameters of a machine with charts
 
 
 def fleet_report(result: dict[str, Any], origin: dict[str, Any]) -> Report:
-    """Everything a fleet has to show; `result` is the verb's JSON."""
+    """The whole page of a fleet; `result` is the verb's JSON."""
     machines = result["machines"]
     changed = [one for one in machines if one["drifted"] or one["effects"]]
     failed = sum(bool(campaign["problem"]) for one in machines for campaign in one["campaigns"])
@@ -44,7 +44,7 @@ def _overview(machines: Sequence[Mapping[str, Any]]) -> Section:
 
 
 def _machine_section(place: int, one: Mapping[str, Any]) -> Section:
-    """A machine's parameters over time: what drifted first, then those of found effects, then the others."""
+    """A machine's parameters over time: first those that drifted, then those of found effects, then the others."""
     tracks, first = one["parameters"], one["campaigns"][0]["date"]
     names = sorted(tracks, key=lambda name: (name not in one["drifted"], name.partition(".")[0] not in one["effects"]))
     panels = tuple(_panel(name, tracks[name], first) for name in names[:PANELS])

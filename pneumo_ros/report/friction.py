@@ -12,7 +12,7 @@ _ROLES: dict[str, Role] = {"extending": "first", "retracting": "second"}
 
 
 def friction_section(result: dict[str, Any]) -> tuple[Section, ...]:
-    """The map of all sliding in all runs; nothing where there was none."""
+    """The map of all sliding in all runs; nothing without sliding."""
     directions = result["friction_map"]["directions"]
     if not directions:
         return ()

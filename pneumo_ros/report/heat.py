@@ -1,4 +1,4 @@
-"""The heat map: a table, so that it works by keyboard, by ear, and without scripts."""
+"""The heat map: a table, so that it works with keyboard and screen reader, and without scripts."""
 
 from pneumo_ros.compare.wording import times
 from pneumo_ros.report.chart import HeatMap
@@ -8,7 +8,7 @@ STEPS = (1.3, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)  # times the noise: where the nex
 
 
 def heat(ratio: float | None) -> str:
-    """Class of a ratio's colour: heat-0 where noise explains it, up to heat-7; none where there is nothing."""
+    """Class of a ratio's colour: heat-0 where noise explains it, up to heat-7; heat-none without a ratio."""
     if ratio is None or ratio != ratio:
         return "heat-none"
     return f"heat-{sum(ratio > step for step in STEPS)}"

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def identification_report(result: dict[str, Any], model: "Model", origin: dict[str, Any]) -> Report:
-    """Everything an identification has to show; `model` is the identified one."""
+    """The whole page of an identification; `model` is the identified one."""
     unknown = result["undetermined"]
     fits = result["map"]["fits"]
     verdict = "Everything asked for is determined." if not unknown else f"Not determined: {', '.join(unknown)}."
@@ -56,7 +56,7 @@ def found_section(result: dict[str, Any]) -> Section:
     together = [pair for pair in result["correlations"] if pair["strong"]]
     if together:
         items = [tag("li", f"{' and '.join(pair['between'])}: {pair['r']:+.2f}") for pair in together]
-        parts.append(tag("p", "Known together rather than one by one (correlation):"))
+        parts.append(tag("p", "Hard to distinguish (correlation):"))
         parts.append(tag("ul", items))
     return Section("identified", "Identified", Html("".join(parts)))
 

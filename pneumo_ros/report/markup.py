@@ -63,7 +63,7 @@ def table(
 
 
 def worded(found: Table, caption: str = "") -> Html:
-    """A table of the wording; `caption` stands where it has no title of its own."""
+    """A table of the wording; `caption` replaces a missing title."""
     return table(found.head, found.rows, found.title or caption, numeric=found.numeric)
 
 

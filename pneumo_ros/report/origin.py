@@ -1,4 +1,4 @@
-"""Where a report comes from: files with their hashes, machine file, versions, command line."""
+"""The origin of a report: files with their hashes, machine file, versions, command line."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from pneumo_ros.report.markup import Content, Html, table, tag
 
 
 def origin_section(origin: dict[str, Any]) -> Section:
-    """Everything needed to repeat the report and to see that it is about these files."""
+    """Everything needed to repeat the report and to check that it is about these files."""
     rows: list[tuple[Content, ...]] = [
         (one["file"], one["role"], f"{one['bytes']:,}".replace(",", " "), tag("code", one["sha256"]))
         for one in origin["files"]

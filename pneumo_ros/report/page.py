@@ -1,4 +1,4 @@
-"""A report as one HTML file: everything it needs is inside, and it may load nothing from elsewhere."""
+"""A report as one HTML file: it contains everything it needs, and may load nothing from elsewhere."""
 
 import base64
 import hashlib
@@ -14,7 +14,7 @@ from pneumo_ros.report.series import encode
 
 
 def page_html(report: Report) -> Html:
-    """The whole page as text. Scripts run only by their hash, so that no text of a recording can become one."""
+    """The whole page as text. Scripts run only by their hash, so that no text of a recording can run as one."""
     from plotly.offline import get_plotlyjs
 
     scripts = [get_plotlyjs(), *(_asset(name) for name in ("series.js", "plots.js", "page.js"))]
@@ -40,7 +40,7 @@ def page_html(report: Report) -> Html:
 
 
 def _policy(scripts: list[str]) -> str:
-    """Nothing is fetched; scripts run by hash alone; plots set styles and make pictures of themselves."""
+    """Nothing is fetched; scripts run only by their hash; plots may set styles and save pictures."""
     digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests)
     return (
@@ -61,13 +61,13 @@ def _header(report: Report) -> Html:
         tag("h1", report.title),
         _verdict(report),
         tag("nav", tag("ul", links), aria_label="Sections"),
-        tag("noscript", tag("p", "The plots need JavaScript; tables and numbers do not.", class_="warning")),
+        tag("noscript", tag("p", "The plots need JavaScript; tables and numbers do not need it.", class_="warning")),
         tag("p", class_="warning", id="trouble", hidden=True, role="alert"),
     )
 
 
 def _verdict(report: Report) -> Html:
-    """The one sentence; with a badge, large, sign and word before it."""
+    """The sentence; a badge puts its sign and word before it, in large letters."""
     badge = report.badge
     if badge is None:
         return tag("p", report.verdict, class_=f"verdict {'good' if report.good else 'bad'}")
@@ -125,5 +125,5 @@ def _trace(trace: Trace) -> dict[str, Any]:
 
 
 def _numbers(values: Any) -> list[float | None]:
-    """Six significant digits are more than a screen shows; null where there is nothing."""
+    """Rounded to six digits, more than a screen shows; null where not finite."""
     return [float(f"{v:.6g}") if np.isfinite(v) else None for v in values]

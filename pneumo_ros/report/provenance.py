@@ -1,4 +1,4 @@
-"""What a report is about and what made it: files with sizes and hashes, versions, command line, date."""
+"""The origin of a report: files with sizes and hashes, versions, command line, date."""
 
 import hashlib
 import platform
@@ -36,7 +36,7 @@ def provenance(
 
 
 def _files_of(bag: Path) -> list[Path]:
-    """The files of a recording: itself, or what lies in its folder."""
+    """The files of a recording: itself, or those in its folder."""
     return sorted(path for path in bag.iterdir() if path.is_file()) if bag.is_dir() else [bag]
 
 

@@ -8,7 +8,7 @@ from pneumo_ros.report.chart import Section
 from pneumo_ros.report.heat import heat
 from pneumo_ros.report.markup import Html, scrolling, tag
 
-_SHORTEST = 0.05  # s in a regime: less says nothing of it
+_SHORTEST = 0.05  # s in a regime; shorter ones are not judged
 
 
 def regimes_section(result: dict[str, Any]) -> Section:

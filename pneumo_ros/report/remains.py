@@ -1,4 +1,4 @@
-"""What no effect explains: its shape, or that there is none, and the experiment that shows more of it."""
+"""The residual that no effect explains: its shape, if any, and the experiment that shows more of it."""
 
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def remains_section(said: DiagnosisWords, outcome: "Outcome") -> Section:
-    """The sentences, the shape where something remains, and the experiment."""
+    """The sentences, the shape of what remains, and the experiment."""
     left, body = outcome.unexplained, remains_text(said)
     if left is None:
         return Section("remains", "What remains", body)
@@ -41,7 +41,7 @@ def _chart(outcome: "Outcome", left: "Unexplained") -> Chart:
 
 
 def _words(left: "Unexplained") -> str:
-    """What there is to see."""
+    """The chart in words."""
     _, unit, factor = EQUATIONS[left.equation]
     low, high = factor * float(np.min(left.mean)), factor * float(np.max(left.mean))
     return f"Bin means from {number(low)} to {number(high)} {unit}, over {number(float(left.seconds.sum()))} s."

@@ -22,22 +22,22 @@ def residuals_section(outcome: "Outcome") -> Section:
     """A chart for each equation that failed after the refit."""
     title = "Before and after"
     if not outcome.added:
-        text = "Nothing was added, so there is nothing to compare. The residuals of the refitted model stand under "
+        text = "Nothing was added, so there is nothing to compare. The residuals of the refitted model are under "
         return Section("residuals", title, tag("p", text, tag("a", "Equations", href="#equations"), "."))
     names = [name for name in outcome.failing if name in outcome.before.dependences]
     if not names:
         text = "No equation failed after the refit along the held-out recordings: see the held-out error instead."
         return Section("residuals", title, tag("p", text))
     text = (
-        "What was measured minus what the model claims, along the held-out recordings, over the variable that explains "
-        "most of it: means over bins with their 95 % interval. The grey band is what noise scatters single windows by; "
-        "below, the seconds each bin rests on."
+        "Measured minus model, along the held-out recordings, over the variable that explains most of it: means over "
+        "bins with their 95 % interval. The grey band is the scatter of single windows by noise; below: the seconds in "
+        "each bin."
     )
     return Section("residuals", title, tag("p", text, class_="soft"), parts=tuple(_part(outcome, n) for n in names))
 
 
 def _part(outcome: "Outcome", equation: str) -> Section:
-    """One equation: its size before and after, and what it follows."""
+    """One equation: its residual before and after, over the variables that explain it."""
     before, after = (_size(one, equation) for one in (outcome.before, outcome.after))
     charts = tuple(_chart(outcome, equation, variable) for variable in best(outcome.before, equation))
     words = tag("p", f"Refitted {before}; final model {after}.")

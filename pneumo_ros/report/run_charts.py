@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _FINER = 5.0  # the series are stored this much finer than their noise
-_ROLES: dict[str, Role] = {"fill": "third", "exha": "third", "valv": "second"}  # by what a regime is of
+_ROLES: dict[str, Role] = {"fill": "third", "exha": "third", "valv": "second"}  # by the first letters of a regime
 
 
 def run_charts(run: "RunComparison", link: str, bucket: int) -> tuple[Chart, ...]:
     """A chart for every signal, one for the equations, one for input and regimes.
 
-    `link` joins their zooms; two samples of every `bucket` are kept (`series.extremes`).
+    Charts of one `link` zoom together; two samples of every `bucket` are kept (`series.extremes`).
     """
     signals = (_signal_chart(run, name, link, bucket) for name in run.error)
     return (*signals, _residual_chart(run, link), _regime_chart(run, link))
@@ -72,7 +72,7 @@ def _residual_chart(run: "RunComparison", link: str) -> Chart:
             Trace("2 x noise", "noise", "line", time, -2.0 * noise, resolution=0.02 * fine),
         )))  # fmt: skip
         said.append(f"{words} {times(run.equations[name].ratio_to_noise)}")
-    words = f"What is measured minus what the model claims, along the measured signals; over noise: {', '.join(said)}."
+    words = f"Measured minus model, along the measured signals; over noise: {', '.join(said)}."
     height = 100 + 130 * len(panels)
     return Chart(
         f"{link}-residuals",

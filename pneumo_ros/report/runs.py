@@ -1,4 +1,4 @@
-"""Run by run: errors, worst intervals, and what was measured and predicted over time, zooming together."""
+"""Run by run: errors, worst intervals, and measured and predicted signals over time, which zoom together."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +13,13 @@ from pneumo_ros.report.run_charts import run_charts
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison, RunComparison
 
-BUDGET = 3_600_000  # characters that the series of a page may take; the rest of ten megabytes is plotly's and tables
-# Characters a value takes, rounded up from what recordings with 10 um and 300 Pa of noise took: all of them, thinned
+BUDGET = 3_600_000  # characters for the series of a page; plotly and tables take the rest of ten megabytes
+# Characters per value, rounded up from recordings with 10 um and 300 Pa of noise: with all values, and thinned
 _WHOLE, _THINNED = 0.6, 1.1
 
 
 def thinning(comparison: "Comparison") -> int:
-    """Two of how many samples are kept so that the page stays small: 2 where there is room for all of them."""
+    """Size of the buckets of which two samples are kept, so that the page stays small; 2 keeps all samples."""
     values = sum(4 * len(one.error) * one.samples for one in comparison.runs)
     return 2 if values * _WHOLE <= BUDGET else max(int(np.ceil(2.0 * values * _THINNED / BUDGET)), 3)
 
@@ -29,7 +29,7 @@ def runs_section(result: dict[str, Any], comparison: "Comparison", bucket: int) 
     every = "every sample" if bucket == 2 else f"two of every {bucket} samples, those of smallest and largest error"
     text = (
         f"Measured, predicted over windows of {result['horizon_s']:g} s that each start from an estimated state, and "
-        f"simulated freely from the first sample (dashed, shown by a click on its name). Drawn from {every}. Drag "
+        f"simulated freely from the first sample (dashed; a click on its name shows it). Drawn from {every}. Drag "
         "across a plot to zoom all plots of the run; double click to see the whole run again."
     )
     parts = tuple(

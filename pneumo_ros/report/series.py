@@ -1,4 +1,4 @@
-"""Long series in few bytes: quantised well below the noise, differenced, deflated; thinned where that is not enough.
+"""Long series in few bytes: quantised well below the noise, differenced, deflated; thinned if that is still too much.
 
 A page reads them back with `DecompressionStream("deflate")`, which browsers have had since 2023.
 """
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _LARGEST = 2**28  # of a quantised value: differences of differences stay within 32 bits
-_PROBE = 1 << 14  # values that decide the order
+_PROBE = 1 << 14  # values from which the order is chosen
 
 
 def encode(x: Array, y: Array, resolution: float) -> dict[str, Any]:
@@ -40,7 +40,7 @@ def encode(x: Array, y: Array, resolution: float) -> dict[str, Any]:
 
 
 def _filled(y: Array, found: NDArray[np.bool_]) -> Array:
-    """Gaps filled with the value before them, which costs nothing once differenced."""
+    """Gaps filled with the value before them, whose differences are zero."""
     if not found.any():
         return np.zeros(len(y))
     last = np.maximum.accumulate(np.where(found, np.arange(len(y)), -1))
@@ -53,7 +53,7 @@ def _gaps(found: NDArray[np.bool_]) -> list[list[int]]:
 
 
 def _shortest(values: Index) -> dict[str, Any]:
-    """Differences of first or second order, whichever deflates better: smooth curves like the second."""
+    """Differences of first or second order, whichever deflates better: the second for smooth curves."""
     first = np.diff(values, prepend=0)
     choices = {1: first, 2: np.diff(first, prepend=0)}
     order = min(choices, key=lambda k: len(_deflated(choices[k][:_PROBE], 1)))
@@ -61,7 +61,7 @@ def _shortest(values: Index) -> dict[str, Any]:
 
 
 def _deflated(values: Index, effort: int) -> bytes:
-    """Signs folded in (0, -1, 1, -2 ... become 0, 1, 2, 3 ...), the four bytes of all numbers apart, deflated."""
+    """Signs folded in (0, -1, 1, -2 ... become 0, 1, 2, 3 ...), as four planes of bytes, deflated."""
     folded = ((values << 1) ^ (values >> 63)).astype("<u4")
     return zlib.compress(folded.view(np.uint8).reshape(-1, 4).T.tobytes(), effort)
 

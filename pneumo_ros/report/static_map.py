@@ -16,8 +16,8 @@ def static_map_section(result: dict[str, Any]) -> Section:
     """Points, curves and residuals of an identification's JSON."""
     words = (
         f"Each dot is a window of {result['map']['window_s']:g} s of steady motion: mean velocity, and the friction "
-        "force that the pressures balance there (drive - load - mass x acceleration). The line is the friction of the "
-        "identified model at constant velocity, the dotted one that of the machine file before."
+        "force from the pressures there (drive - load - mass x acceleration). The line is the friction of the "
+        "identified model at constant velocity, the dotted line is that of the machine file before."
     )
     return Section("static-map", "Static friction map", tag("p", words, class_="soft"), charts=(_chart(result),))
 

@@ -1,4 +1,4 @@
-"""The waterfall: held-out error from the model as given over the refit and every effect down to the noise floor."""
+"""The waterfall: held-out error of the model as given, after the refit and after every effect, and the noise floor."""
 
 from collections.abc import Sequence
 
@@ -10,12 +10,12 @@ from pneumo_ros.report.markup import tag, worded
 from pneumo_ros.wording.diagnosis import DiagnosisWords
 from pneumo_ros.wording.errors import StepWords
 
-_DECADES = 8.0  # from this ratio on, the axis is logarithmic
+_DECADES = 8.0  # above this ratio, the axis is logarithmic
 _ROOM = 0.2  # of the axis, right of the longest bar: for its label
 
 
 def waterfall_section(said: DiagnosisWords) -> Section:
-    """The chart, and below it each signal in its unit."""
+    """The chart, and each signal in its unit below."""
     text = (
         f"Each held-out recording is predicted over windows of {said.horizon:g} s that start from an estimated state. "
         "Shown is the error of a typical window (the geometric mean over the windows, the root mean square over the "
@@ -27,7 +27,7 @@ def waterfall_section(said: DiagnosisWords) -> Section:
 
 
 def waterfall_chart(steps: Sequence[StepWords]) -> Chart:
-    """A bar for each step: as given, refitted, then what was added."""
+    """A bar for each step: as given, refitted, then the added effects."""
     names, errors = [one.name for one in steps], np.array([one.error for one in steps])
     lowest, highest = min(float(errors.min()), 1.0), max(float(errors.max()), 1.0)
     log = highest / lowest > _DECADES

@@ -30,7 +30,7 @@ def test_the_error_falls_to_the_noise_floor(folder: Path) -> None:
     done = subprocess.run(line, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Added viscous_friction to 'axis'. On 1 recording held out, ")
-    assert "It does NOT pay" not in done.stdout
+    assert "It does NOT help" not in done.stdout
     assert "Machine file written to more.yaml" in done.stderr
     data = json.loads((folder / "more.json").read_text())
     (added,) = data["added"]

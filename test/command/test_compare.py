@@ -162,7 +162,7 @@ def test_the_namespace_can_be_named(namespace: str) -> None:
     ("arguments", "code", "words"),
     [
         ([], 2, "BAG"),
-        (["left", "--horizon", "0"], 2, "--horizon 0 is no length of time"),
+        (["left", "--horizon", "0"], 2, "--horizon 0 is not a length of time"),
         (["left", "--horizon", "-1"], 2, "--horizon -1"),
         (["left", "--horizon", "nan"], 2, "--horizon nan"),
         (["left", "--horizon", "inf"], 2, "--horizon"),

@@ -69,7 +69,7 @@ def test_both_comparisons_are_reported(shown: tuple[Path, str, dict[str, Any]]) 
         assert isinstance(comparison, dict)
         assert set(comparison["equations"]) == {"momentum", "chamber_a", "chamber_b"}
         assert comparison["runs"][0]["error"]["position_m"]["rms"] > 0.0
-    assert "The model against a recording it did not make" in shown[1]
+    assert "The model against a recording of another plant" in shown[1]
 
 
 @pytest.mark.check

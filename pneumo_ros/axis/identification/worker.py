@@ -58,7 +58,7 @@ class Worker:
             if not self._stopped and not {"result", "failed"} & last.keys():
                 complaints.seek(0)
                 words = complaints.read().strip().splitlines()
-                said = words[-1] if words else "it wrote nothing"
+                said = words[-1] if words else "no output"
                 self._told({"failed": f"the work ended unexpectedly with exit code {code}: {said}"})
 
     def _listen(self, process: "subprocess.Popen[str]", job: str) -> Line:

@@ -12,7 +12,7 @@ from pneumo_ros.errors import DataError, PneumoError
 if TYPE_CHECKING:
     from pneumo_ros.records import Recording
 
-LEVELS = (0.1, -0.05, 0.05, 0.0)  # m, where the piston is sent, one after the other
+LEVELS = (0.1, -0.05, 0.05, 0.0)  # m, references of the piston, one after the other
 START = 60.0  # s, until the first valve command; the kernel may have to be compiled
 # Sensors as on a rig: position alone, 5 um and 10 um steps; 300 Pa and 16 bit over 10 bar
 SENSORS = {
@@ -54,7 +54,7 @@ def _wait_for_motion(fleet: Fleet, bag: Path) -> None:
                 return
         except DataError:  # nothing recorded yet
             continue
-    raise PneumoError(f"no valve command within {START:g} s; what the nodes said is in {fleet.logs}")
+    raise PneumoError(f"no valve command within {START:g} s; the logs of the nodes are in {fleet.logs}")
 
 
 def motion(recording: "Recording", seconds: float) -> str:

@@ -1,10 +1,10 @@
-"""What is in a bag, and how the simulator that filled it was doing."""
+"""Contents of a bag, and whether its nodes kept real time."""
 
 from pathlib import Path
 
 from pneumo_ros.command.console import columns
 
-LATE = 0.01  # share of late ticks from which real time was not kept
+LATE = 0.01  # share of late ticks above which real time was not kept
 
 
 def traffic(bag: Path) -> str:
@@ -26,23 +26,23 @@ def traffic(bag: Path) -> str:
 
 
 def hardship(bag: Path) -> str | None:
-    """A sentence when nodes could not keep real time or missed each other, by their own diagnostics."""
+    """A sentence if nodes lost real time or messages, by their own diagnostics."""
     simulator, controller, recorder = (last_diagnostics(bag, name) for name in ("simulator", "controller", "recorder"))
     late = float(simulator.get("late_ticks", 0)) / max(float(simulator.get("ticks", 0)), 1.0)
     facts = {
         f"{100.0 * late:.1f} % of the simulator's ticks came over 1 ms late": late > LATE,
         "the valve closed for lack of commands": float(simulator.get("valve_closures", 0)) > 0,
-        "measurements stayed away from the controller": float(controller.get("restarts", 1)) > 1,
+        "the controller missed measurements": float(controller.get("restarts", 1)) > 1,
         "the recorder lost messages": float(recorder.get("lost_messages", 0)) > 0,
     }
     found = [fact for fact, holds in facts.items() if holds]
     if not found:
         return None
-    return f"This machine was busy: {', '.join(found)}. What follows suffers from it; try again when less is running."
+    return f"This machine was busy: {', '.join(found)}. This affects the results; try again when less is running."
 
 
 def last_diagnostics(bag: Path, node: str) -> dict[str, str]:
-    """What a node said last on /diagnostics, empty if nothing."""
+    """The last values of a node on /diagnostics, empty if there are none."""
     from rosbags.typesys import Stores, get_typestore
 
     from pneumo_ros.records import Bag

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from pneumo_ros.plant import Model
 
-# Effects the plant may hide, with the parameter that has a size, and sizes of full strength. End cushions are not among
-# them, nor what takes long rests or long runs to be seen.
+# Effects the plant may hide, each with the parameter that sets its size, and its range. End cushions are left out,
+# and effects that only long rests or long runs show.
 HIDEABLE = {
     "viscous_friction": ("coefficient", 80.0, 300.0),
     "asymmetric_friction": ("ratio", 0.1, 0.4),
@@ -41,13 +41,13 @@ POSITION_NOISE, POSITION_STEP, PRESSURE_NOISE, PRESSURE_STEP = 5e-6, 1e-5, 300.0
 
 
 def second_simulator() -> Path | None:
-    """The folder of the simulator that shares no code with the package, where this runs from a checkout."""
+    """The folder of the simulator that shares no code with the package, if this runs from a checkout."""
     folder = Path(__file__).parents[3] / "test" / "rig"
     return folder if (folder / "__main__.py").is_file() else None
 
 
 def record_machine(folder: Path, truth: Path, seed: int, rig: Path | None, console: Console) -> None:
-    """Record the machine of `seed` into `folder`/train and `folder`/holdout, and what it hides into the file `truth`.
+    """Record the machine of `seed` into `folder`/train and `folder`/holdout, its hidden effect into file `truth`.
 
     `rig` is the folder of a second simulator; None takes the package's plant. PneumoError when the simulator fails.
     """
@@ -108,7 +108,7 @@ def _perform(folder: Path, experiment: str, machine: "Model", seed: int) -> None
     from pneumo_ros.plant import load_model
     from pneumo_ros.records.writing import write_recording
 
-    programme = make_programme(experiment, load_model())  # by whom does not know what the machine hides
+    programme = make_programme(experiment, load_model())  # without knowledge of the hidden effect
     rehearsal = rehearse(programme, machine)
     time = SAMPLE * np.arange(round(rehearsal.duration / SAMPLE) + 1)
     when, volts = np.array(rehearsal.commands).T

@@ -1,4 +1,4 @@
-"""A machine that hides an effect, from recording it to the truth: nothing here reads what it hides before the end."""
+"""Record a machine that hides an effect, diagnose it, and reveal the truth, which is read only at the end."""
 
 import json
 import shlex
@@ -15,8 +15,8 @@ from pneumo_ros.errors import PneumoError
 
 INTERRUPTED = 130
 OTHER = "the simulator in {rig}, which shares no code with this package"
-OWN = """this package's own plant, as there is no other simulator here: except for what it hides, its equations are the
-model's, which is easier than any machine"""
+OWN = """this package's own plant, as there is no other simulator here: except for the hidden effect, its equations are
+those of the model, which is easier than a real machine"""
 
 
 def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> dict[str, Any]:
@@ -33,7 +33,7 @@ def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> 
     console.say(f"Simulated by {OTHER.format(rig=rig) if rig else OWN}.")
     console.say("\n5. Where does the model fail?\n")
     _call(["compare", next((machine / "holdout").glob("holdout_steps*"))], console)
-    console.say("\n6. What is it that the model lacks? Fitted to the runs in train, judged by those in holdout\n")
+    console.say("\n6. What does the model lack? Fitted to the runs in train, judged by those in holdout\n")
     written = {"--out": folder / "improved.yaml", "--report": folder / "report.html", "--json": found}
     options = [word for pair in written.items() for word in pair]
     _call(["diagnose", machine / "train", "--holdout", machine / "holdout", *options], console, written.values())
@@ -44,7 +44,7 @@ def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> 
 
 
 def _call(arguments: Sequence[str | Path], console: Console, written: Iterable[Path] = ()) -> None:
-    """Run a verb as a user does, its command line shown; PneumoError when it fails or does not write its files."""
+    """Run a verb as a user does, and print its command line; PneumoError when it fails or does not write its files."""
     words = [str(word) for word in arguments]
     console.say(f"$ {program()} {shlex.join(words)}")
     silent = subprocess.DEVNULL if console.json_target == "-" else None
@@ -53,7 +53,7 @@ def _call(arguments: Sequence[str | Path], console: Console, written: Iterable[P
         try:
             code = process.wait()
         except KeyboardInterrupt:
-            process.wait()  # it was interrupted too, and may have something to write
+            process.wait()  # it was interrupted too, and may still write results
             raise
     if code == INTERRUPTED:
         raise KeyboardInterrupt

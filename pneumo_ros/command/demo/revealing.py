@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
-LARGEST_GROUP = 3  # effects that an answer may leave open and still be one
+LARGEST_GROUP = 3  # effects that a right answer may leave open
 
 EXACT, GROUP, VAGUE, MISSED, FALSE, WRONG = "exact", "group", "vague", "missed", "false addition", "wrong"
 Addition = tuple[str, Sequence[str]]  # an effect that was added, and its rivals, which explain as much
@@ -14,8 +14,8 @@ Addition = tuple[str, Sequence[str]]  # an effect that was added, and its rivals
 class Judgement:
     """Names of hidden effects by how they were found, and of added ones that are not there.
 
-    exact: added, with no rival. grouped: added, or rival of one that was, in a group of at most LARGEST_GROUP. vague:
-    in a larger group. missed: in none. false: added, and neither hidden nor in a group with what is.
+    exact: added, with no rival. grouped: added or a rival, in a group of at most LARGEST_GROUP. vague:
+    in a larger group. missed: in no group. false: added, but neither hidden nor in a group with a hidden effect.
     """
 
     exact: tuple[str, ...] = ()
@@ -26,7 +26,7 @@ class Judgement:
 
     @property
     def word(self) -> str:
-        """The whole in one word: the worst that can be said of it; "exact" too where nothing was hidden or added."""
+        """The judgement in one word, the worst that applies; also "exact" where nothing was hidden or added."""
         if self.false:
             return WRONG if self.missed or self.vague else FALSE
         for names, word in ((self.missed, MISSED), (self.vague, VAGUE), (self.grouped, GROUP)):

@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_refit(parser)
     add_model(parser)
     add_report(parser)
-    parser.add_argument("--series", metavar="FILE.npz", help="write what is measured and predicted as numpy arrays")
+    parser.add_argument("--series", metavar="FILE.npz", help="write measured and predicted signals as numpy arrays")
     add_output(parser)
 
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.compare.compare import compare
 
     if not options.horizon > 0.0:
-        raise UsageError(f"--horizon {options.horizon:g} is no length of time; give seconds, such as --horizon 1")
+        raise UsageError(f"--horizon {options.horizon:g} is not a length of time; give seconds, such as --horizon 1")
     report = prepare_report(options)
     if options.series:
         check_writable(options.series)
@@ -68,7 +68,7 @@ def _write_series(comparison: "Comparison", path: str) -> None:
     from pneumo_ros.compare.arrays import comparison_arrays
 
     packed = io.BytesIO()
-    np.savez(packed, **comparison_arrays(comparison))  # type: ignore[arg-type]  # a stub of numpy takes them for flags
+    np.savez(packed, **comparison_arrays(comparison))  # type: ignore[arg-type]  # numpy's stub reads them as flags
     write_whole(path, packed.getvalue())
 
 
@@ -133,7 +133,7 @@ def equations_text(comparison: "Comparison") -> str:
 
 
 def findings_text(result: dict[str, Any]) -> str:
-    """Where it fails: a line for each equation and signal that noise does not explain, and what can be said of it."""
+    """Where it fails: a line for each equation and signal that noise does not explain, and its details."""
     lines = [verdict(result)]
     for finding in findings(result):
         if finding.level != "good":

@@ -60,7 +60,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     folder.mkdir(parents=True)
     result: dict[str, Any] = {"schema_version": 1, "seed": seed, "rig": rig, **_axis(folder, options.seconds, console)}
     if other:
-        console.say("\nThe model against a recording it did not make\n")
+        console.say("\nThe model against a recording of another plant\n")
         result["other"] = _compare(other, console).as_dict()
     result |= find_effect(folder, seed, rig, console)
     console.say(f"\nAll of it is in {folder}. Next:\n  {program()} effects\n  {program()} --help")
@@ -83,7 +83,7 @@ def _rig(given: str | None) -> Path | None:
 
 
 def _axis(folder: Path, seconds: float, console: Console) -> dict[str, Any]:
-    """The axis on ROS 2, its motion, and the model against it."""
+    """The axis on ROS 2, its motion, and the model compared with it."""
     bag = folder / "bag"
     console.say("1. An axis runs: simulator, controller and recorder, three processes on ROS 2\n")
     codes = drive(bag, folder / "logs", seconds, console)

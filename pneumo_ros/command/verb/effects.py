@@ -58,7 +58,7 @@ def listing(effects: dict[str, "type[Effect]"], model: "Model") -> str:
 
 
 def explanation(effect: "type[Effect]", model: "Model") -> str:
-    """All there is to know of one effect, as text."""
+    """Everything about one effect, as text."""
     from pneumo_ros.plant.catalogue import body, helpers, room
 
     parts = [f"{effect.name}  ({room(effect)})", inspect.cleandoc(effect.__doc__ or "")]

@@ -31,7 +31,7 @@ TIMEOUT = 200.0  # ms
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """NAME, what the trials are like, where to run them, and the common options."""
+    """NAME, the form of the trials, where to run them, and the common options."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="experiment, or a programme file that --write made")
     parser.add_argument(
         "--voltages", nargs="+", type=float, default=[], metavar="V",
@@ -96,7 +96,7 @@ def _list(console: Console) -> int:
 
     rows = [(f"  {name}", one.purpose) for name, one in EXPERIMENTS.items()]
     console.say(
-        f"{columns(rows)}\n\nWhat one would do: pneumo experiment NAME --plan; on a live plant: without --plan."
+        f"{columns(rows)}\n\nShow the trials: pneumo experiment NAME --plan; run them on a live plant: without --plan."
     )
     listed = [{"name": name, "purpose": one.purpose} for name, one in EXPERIMENTS.items()]
     console.json({"schema_version": 1, "experiments": listed})
@@ -104,7 +104,7 @@ def _list(console: Console) -> int:
 
 
 def _named(options: argparse.Namespace) -> "Programme":
-    """The programme that NAME stands for."""
+    """The programme of an experiment called NAME, or of a programme file."""
     from pneumo_ros.experiment.catalogue import make_programme
     from pneumo_ros.experiment.programme_file import read_programme
 
@@ -129,12 +129,12 @@ def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[
     console.say(f"{separation_text(ranked, options.separate, noise)}\n\n{sentence}\n")
     found, most = best(ranked, by_hand=dry or options.prepared), best(ranked)
     if most is not None and found is not most:
-        console.note(f"{most.offer.name} takes a hand ({most.offer.prepare}) and --prepared; not done now")
+        console.note(f"{most.offer.name} needs a preparation ({most.offer.prepare}) and --prepared; not done now")
     return found.offer.programme if found else None, separation_dict(ranked, options.separate, noise, sentence)
 
 
 def _rehearsed(programme: "Programme", options: argparse.Namespace) -> "Rehearsal":
-    """What becomes of a programme on the model, once somebody has prepared it."""
+    """The rehearsal on the model of a programme that has been prepared."""
     from pneumo_ros.experiment.offers import conditions
     from pneumo_ros.experiment.rehearsal import rehearse
 
@@ -196,7 +196,7 @@ def _live(
 ) -> int:
     """Run it on a plant."""
     if programme.prepare and not options.prepared:
-        raise UsageError(f"{programme.experiment} takes a hand: first {programme.prepare}, then add --prepared")
+        raise UsageError(f"{programme.experiment} needs a preparation: first {programme.prepare}, then add --prepared")
     if rehearsal.aborted:
         console.note(f"Note: on the model this would be aborted: {rehearsal.aborted}")
     folder = Path(options.out) if options.out else _next_folder()

@@ -24,7 +24,7 @@ ADDABLE = {"viscous": "viscous_friction", "stribeck_exponent": "stribeck_shape"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """BAG..., --out, what to fit besides, and the common options."""
+    """BAG..., --out, what else to fit, and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings, or folders of recordings")
     add_machine_file(parser, "write the identified machine file")
     parser.add_argument("--viscous", action="store_true", help="add viscous friction and fit its coefficient sigma_2")

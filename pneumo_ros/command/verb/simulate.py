@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-SECONDS = 10.0  # of an input that has no end of its own
+SECONDS = 10.0  # of an input without an end
 RATE = 1000.0  # Hz
 CHUNK = 50_000  # samples between two reports of progress
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What to simulate.
+    """The simulation to run.
 
     held: (samples * parts,) voltage [V], or force [N], `parts` of them one after another in each sample.
     state: where it starts; text: what it is, for a person; commands: the arrays that the recording is to hold.
@@ -49,9 +49,9 @@ class Plan:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--input, --out and how long, how often, from where."""
+    """--input, --out, duration, rate and start."""
     new = "folder of the new recording; it must not exist yet"
-    parser.add_argument("--input", required=True, metavar="SPEC", help=f"what drives the valve: {FORMS}")
+    parser.add_argument("--input", required=True, metavar="SPEC", help=f"input of the valve: {FORMS}")
     parser.add_argument("--out", required=True, metavar="BAG", help=new)
     parser.add_argument("--seconds", type=float, metavar="S", help=f"how long (default: the input, else {SECONDS:g})")
     parser.add_argument("--rate", type=float, metavar="HZ", help=f"samples per second (default: {RATE:g})")
@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Simulate, write the recording, say what happened."""
+    """Simulate, write the recording, print a summary."""
     from pneumo_ros.records.writing import write_recording
 
     check_new_folder(options.out)
@@ -117,7 +117,7 @@ def _drive(options: argparse.Namespace, model: "Model") -> Plan:
 
 
 def _replay(options: argparse.Namespace, model: "Model", console: Console) -> Plan:
-    """The plan for a recording: its commands at the times they came, from the state it starts in."""
+    """The plan for a recording: its commands at their times, from its start state."""
     import numpy as np
 
     from pneumo_ros.runs.run import PARTS

@@ -21,16 +21,16 @@ EVALUATIONS = 80
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--law, --out and what is to be followed."""
+    """--law, --out and the references to follow."""
     parser.add_argument("--law", metavar="NAME", help="pid, pva, cascade (default) or sliding_mode")
     parser.add_argument("--out", required=True, metavar="FILE", help="control file to write")
     parser.add_argument("--control", metavar="FILE", help="control file to start from (default: the law's defaults)")
     parser.add_argument("--amplitude", type=float, metavar="M", help="of the sine to follow (default: 0.15 strokes)")
-    parser.add_argument("--frequency", type=float, metavar="HZ", help="of it (default: 0.64 of the top speed)")
+    parser.add_argument("--frequency", type=float, metavar="HZ", help="of the sine (default: 0.64 of the top speed)")
     parser.add_argument("--step", type=float, metavar="M", help="of the moves to make (default: 0.03 strokes)")
-    slow = "the gains must also suit a valve spool of this angular frequency, which the machine file need not know"
+    slow = "the gains must also suit a valve spool of this angular frequency, even if the machine file has none"
     parser.add_argument("--spool", type=float, metavar="RAD/S", help=slow)
-    runs = f"how often to try gains, of which each try is four runs (default: {EVALUATIONS})"
+    runs = f"how many sets of gains to try, each in four runs (default: {EVALUATIONS})"
     parser.add_argument("--evaluations", type=int, default=EVALUATIONS, metavar="N", help=runs)
     add_executor(parser)
     add_model(parser)
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Tune, write the control file, say what it costs and what changed."""
+    """Tune, write the control file, print the cost and the changes."""
     from pneumo_ros.command.trials import task_for
     from pneumo_ros.control.control_file import Control
 

@@ -108,7 +108,7 @@ def text(recording: "Recording") -> str:
 
 
 def sparkline(time: "NDArray[np.float64]", values: "NDArray[np.float64]", width: int) -> str:
-    """Values (n,) over time (n,) as `width` blocks, each as high as their mean there; a dot where there is none."""
+    """Values (n,) over time (n,) as `width` blocks, each as high as the mean of its part; a dot without values."""
     import numpy as np
 
     place = np.minimum(((time - time[0]) / (time[-1] - time[0]) * width).astype(int), width - 1)

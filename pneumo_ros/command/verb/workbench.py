@@ -22,7 +22,7 @@ PORT = 8765
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --port, how to read recordings, and the machine file."""
     parser.add_argument("bags", nargs="*", metavar="BAG", help="recordings, or folders of recordings")
-    parser.add_argument("--port", type=int, default=PORT, metavar="N", help=f"default: {PORT}; 0 takes any free one")
+    parser.add_argument("--port", type=int, default=PORT, metavar="N", help=f"default: {PORT}; 0: any free one")
     add_recordings(parser, cut=False)
     add_model(parser)
     add_output(parser)

@@ -24,7 +24,7 @@
     const group = groupOf(div);
     const turn = (div.turn = (div.turn || 0) + 1);
     const data = await Plots.traces(chart, group.range, Math.max(Math.round(div.clientWidth), 300));
-    if (turn !== div.turn) return; // a later call overtook this one
+    if (turn !== div.turn) return; // a later call has replaced this one
     data.forEach((trace, i) => {
       if (div.data && div.data[i] && div.data[i].visible !== undefined) trace.visible = div.data[i].visible;
     });

@@ -1,4 +1,4 @@
-// A chart of the page as plotly wants it: traces and layout in the colours of the page's style.
+// A chart of the page for plotly: traces and layout in the colours of the page's style.
 "use strict";
 const Plots = (() => {
   const coarse = matchMedia("(pointer: coarse)");
@@ -34,7 +34,7 @@ const Plots = (() => {
     if (trace.kind === "spans") shown.line.width = 7;
     if (trace.kind === "bars" || trace.kind === "removed") {
       Object.assign(shown.line, { width: 18, dash: "solid", color: trace.kind === "bars" ? ink : colour(`${trace.role}-band`) });
-      shown.hoverinfo = "skip"; // labels say it
+      shown.hoverinfo = "skip"; // the labels show the values
     }
     if (trace.kind === "labels") {
       Object.assign(shown, { mode: "text", text: trace.texts.map((text) => `\u00a0${text}`), textposition: "middle right", cliponaxis: false, showlegend: false, hoverinfo: "skip" });
@@ -69,7 +69,7 @@ const Plots = (() => {
     return found;
   }
 
-  // Plain numbers at 1, 2 and 5, or at the decades where there are many.
+  // Plain numbers at 1, 2 and 5 of each decade; at the decades alone where there are many.
   function plainTicks([low, high]) {
     const found = [];
     for (let decade = Math.floor(Math.log10(low)); decade <= Math.log10(high); decade++) {
@@ -84,7 +84,7 @@ const Plots = (() => {
     const names = chart.panels.flatMap((panel) => panel.ticks).map((name) => name.length);
     const left = Math.max(68, 7 * Math.max(0, ...names) + 12, chart.link && width > 700 ? 118 : 0);
     const rows = chart.panels.every((panel) => panel.ticks.length);
-    const whole = chart.span && chart.logX ? chart.span.map(Math.log10) : chart.span; // a logarithmic axis is ranged in decades
+    const whole = chart.span && chart.logX ? chart.span.map(Math.log10) : chart.span; // plotly takes the range of a logarithmic axis in decades
     const total = chart.panels.reduce((sum, panel) => sum + panel.share, 0);
     const gap = chart.panels.length > 1 ? Math.min(0.05, 0.2 / (chart.panels.length - 1)) : 0;
     const result = {

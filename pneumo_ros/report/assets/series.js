@@ -1,4 +1,4 @@
-// Long series of a page: unpacked from differences, and thinned to what a screen can show.
+// Long series of a page: unpacked from differences, and thinned to the resolution of a screen.
 "use strict";
 const Series = (() => {
   async function inflate(text) {
@@ -7,7 +7,7 @@ const Series = (() => {
     return new Uint8Array(await new Response(stream).arrayBuffer());
   }
 
-  // Bytes of all numbers apart, signs folded in, differences of first or second order: whole numbers again.
+  // Undoes `series._deflated`: byte planes, folded signs, differences of first or second order; gives whole numbers.
   async function unpack(packed, count) {
     const bytes = await inflate(packed.data);
     const values = new Float64Array(count);
