@@ -7,7 +7,7 @@ from flask import Flask, Response, request
 from werkzeug.exceptions import HTTPException
 
 _LOG = logging.getLogger(__name__)
-_WORDS = 200  # characters of what went wrong
+_WORDS = 200  # characters of the failure that are shown
 
 
 def answer_in_words(server: Flask) -> None:

@@ -1,4 +1,4 @@
-"""The page as a whole: its layout, its panels, and the files it is made of, all from this machine."""
+"""The whole page: its layout, its panels, and its files, all from this machine."""
 
 from functools import partial
 from importlib.resources import files
@@ -42,7 +42,7 @@ _REPORT = {"page.css": "text/css", "series.js": "text/javascript", "plots.js": "
 
 
 def make_app(desks: Desks, guard: Guard) -> Dash:
-    """The application over `desks`, which answers only to whom `guard` lets in."""
+    """The application over `desks`, which answers only requests that `guard` accepts."""
     server = Flask("pneumo_ros.workbench")
     app = Dash(
         "pneumo_ros.workbench", server=server, title="pneumo workbench", update_title=None,
@@ -69,7 +69,7 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
 
 
 def _led_on(desks: Desks) -> AnyResponse | None:
-    """The address of a desk that is no more leads to a new one."""
+    """Redirect from the address of a closed desk to a new one."""
     if not request.path.startswith("/b/"):
         return None
     try:
@@ -101,7 +101,7 @@ def _machine(desk: Desk, _revision: int) -> list[str]:
 
 
 def _report_file(name: str) -> Response:
-    """What the page shares with reports."""
+    """The files that the page shares with reports."""
     if _PLOTLY.endswith(f"/{name}"):
         from plotly.offline import get_plotlyjs
 

@@ -1,4 +1,4 @@
-"""Recordings on a desk: what they are called, whether they are fitted or held out, and what is cut from them."""
+"""Recordings on a desk: their names, whether they are fitted or held out, and the parts cut from them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from pneumo_ros.records.folders import recordings_in
 
 Role = Literal["fit", "hold", "out"]
 ROLES: dict[Role, str] = {"fit": "fit", "hold": "hold out", "out": "leave out"}
-_HELD = "hold"  # recordings of such names are meant to be held out
+_HELD = "hold"  # names of recordings to hold out begin with it
 _KEPT = 32  # recordings in memory: 10 minutes at 1 kHz take 40 MB
 
 
@@ -25,7 +25,7 @@ def reading_options(how: ReadOptions) -> list[str]:
 
 @dataclass(frozen=True)
 class Bag:
-    """One recording: its path as verbs get it, its part in a fit, and the seconds cut from it."""
+    """One recording: its path for the verbs, its role in a fit, and the seconds cut from it."""
 
     name: str
     path: str
@@ -34,7 +34,7 @@ class Bag:
     problem: str = ""  # why it cannot be used; empty when it can
 
     def cut_options(self) -> list[str]:
-        """As words of a command line."""
+        """The cuts as words of a command line."""
         return [word for begin, end in self.cuts for word in ("--cut", f"{self.path}:{begin:g}-{end:g}")]
 
 
@@ -51,7 +51,7 @@ def found_bags(paths: Iterable[str | Path], folder: Path | None = None) -> list[
 
 
 def _told_apart(bags: list[Bag]) -> list[Bag]:
-    """Bags of one name are called by their folder, too."""
+    """Add the folder to names that several bags have."""
     names = [bag.name for bag in bags]
     return [Bag(f"{Path(b.path).parent.name}/{b.name}", b.path, b.role) if names.count(b.name) > 1 else b for b in bags]
 

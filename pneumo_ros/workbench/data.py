@@ -1,4 +1,4 @@
-"""What the page's script asks for by itself: charts while somebody zooms or slides, the job, the live axis. As JSON."""
+"""Data that the page's script requests, as JSON: charts during a zoom or a slide, the job, the live axis."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -16,17 +16,17 @@ from pneumo_ros.workbench.signals import View, readings, signals_chart
 from pneumo_ros.workbench.thin import Span
 from pneumo_ros.workbench.variant import Variant
 
-_LONGEST = 100_000  # bytes of a question
+_LONGEST = 100_000  # bytes of a request
 
 
 def answer_plots(server: Flask, desks: Desks) -> None:
-    """POST /signals/DESK and its like take a JSON object and return one; status 400 says what is wrong."""
+    """POST /signals/DESK and the others take a JSON object and return one; status 400 says what is wrong."""
 
     def answering(make: Callable[[Desk, Mapping[str, Any]], Any]) -> Callable[[str], Response]:
         def answer(desk: str) -> Response:
             asked = request.get_json(silent=True) if (request.content_length or 0) < _LONGEST else None
             if not isinstance(asked, dict):
-                return Response("a JSON object is wanted", 400)
+                return Response("the request is not a JSON object", 400)
             try:
                 return jsonify(make(desks.of(f"/b/{desk}"), asked))
             except KeyError:
@@ -42,7 +42,7 @@ def answer_plots(server: Flask, desks: Desks) -> None:
 
 
 def signals_of(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The chart of a run, None without recordings. Asked are run, span, shown, regime, other and marks."""
+    """The chart of a run, None without recordings. `asked` has run, span, shown, regime, other and marks."""
     bag = desk.shelf.bag(asked.get("run"))
     if bag is None:
         return None
@@ -58,22 +58,22 @@ def cursors_of(desk: Desk, asked: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 
 def view_of(asked: Mapping[str, Any]) -> View:
-    """What is asked to be shown; ValueError for numbers that are none."""
+    """The view that is requested; ValueError for texts that are not numbers."""
     marks = {str(name): number(x) for name, x in (asked.get("marks") or {}).items()}
     return View([str(name) for name in asked.get("shown") or ()], span_of(asked), str(asked.get("regime") or ""), marks)
 
 
 def span_of(asked: Mapping[str, Any]) -> Span | None:
-    """The seconds in view; ValueError where they are none."""
+    """The seconds in view; ValueError for texts that are not numbers."""
     span = asked.get("span")
     return (number(span[0]), number(span[1])) if span else None
 
 
 def number(value: Any) -> float:
-    """A finite number; UsageError for anything else."""
+    """A finite number; UsageError if it is not finite."""
     found = float(value)
     if not math.isfinite(found):
-        raise UsageError("a number that is not finite was asked for")
+        raise UsageError("the request has a number that is not finite")
     return found
 
 

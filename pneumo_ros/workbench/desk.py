@@ -1,4 +1,4 @@
-"""A desk: what one tab of the browser works on. It outlives a reload of the page, and no other tab touches it."""
+"""A desk: the state of one tab of the browser. It survives a reload of the page, and belongs to no other tab."""
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +17,7 @@ from pneumo_ros.workbench.variant import Compared, Variant, model_of
 
 @dataclass(frozen=True)
 class Given:
-    """What the command line gave: recordings, how to read them, the machine file, files of effects."""
+    """Arguments of the command line: recordings, how to read them, the machine file, files of effects."""
 
     bags: tuple[str, ...] = ()
     how: ReadOptions = field(default_factory=ReadOptions)
@@ -35,14 +35,14 @@ class Desk:
         machine = str(path.resolve()) if path.is_file() else given.machine
         self.variants = [Variant(0, machine, "as given")]
         self.current, self.revision, self.message = 0, 0, ""
-        self.chosen = 0  # counts how often another variant was taken up
+        self.chosen = 0  # counts the changes to another variant
         self.ticked: frozenset[str] = frozenset(self.model().effects)
         self.job: Job | None = None
         self.live: Live | None = None
         self._jobs = 0
         atmosphere = self.model().parameters.get("air.atmospheric_pressure", ATMOSPHERE)
         self.shelf = Shelf(folder, given.how, atmosphere, self.changed)
-        self.opened: tuple[int, str] = (0, "")  # which job showed its result last, and on which tab
+        self.opened: tuple[int, str] = (0, "")  # number of the last job that showed its result, and the tab
         self.shelf.take(given.bags)
 
     # --- machines ---------------------------------------------------------------------------------------------------
@@ -58,7 +58,7 @@ class Desk:
         return model_of(chosen.machine, self.folder, self.given.effects)
 
     def lineage(self, number: int | None = None) -> list[Variant]:
-        """From the machine as given to a variant."""
+        """The variants from the machine as given to a variant."""
         chosen: Variant | None = self.variant if number is None else self.variants[number]
         found: list[Variant] = []
         while chosen is not None:
@@ -67,19 +67,19 @@ class Desk:
         return found
 
     def choose(self, number: int) -> None:
-        """Take a variant up again."""
+        """Make a variant the current machine."""
         with self.lock:
             self.current, self.chosen = number, self.chosen + 1
             self.ticked = frozenset(self.model().effects)
             self.changed()
 
     def undo(self) -> None:
-        """Back to what the current machine was made from."""
+        """Back to the parent of the current machine."""
         if self.variant.parent is not None:
             self.choose(self.variant.parent)
 
     def by_hand(self, values: Mapping[str, float]) -> None:
-        """A variant with other values; UsageError for one that is out of range."""
+        """A variant with other values; UsageError for a value out of range."""
         said = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
         self._edited(self.model().with_parameters(values), "by hand", f"# set by hand: {said}")
 
@@ -124,11 +124,11 @@ class Desk:
             self.job.cancel()
 
     def campaign(self, namespace: str) -> None:
-        """Start driving a live plant with constant voltages; what is recorded is laid on the desk."""
+        """Start driving a live plant with constant voltages; the recordings are added to the desk."""
         self._start(lambda number: campaign_plan(self._bench(), namespace, f"campaign_{number}"))
 
     def close(self) -> None:
-        """End what runs and wait for it."""
+        """End the running processes and wait for them."""
         self.cancel()
         if self.live is not None:
             self.live.close()
@@ -142,14 +142,14 @@ class Desk:
     def _start(self, make: Callable[[int], Plan]) -> None:
         with self.lock:
             if self.job is not None and self.job.running:
-                raise UsageError(f"{self.job.title} goes on; cancel it first")
+                raise UsageError(f"{self.job.title} is running; cancel it first")
             self._jobs += 1
             plan, before = make(self._jobs), self.variant
             self.job = Job(plan.title, plan.lines, self.folder, lambda: self._done(plan, before), self.changed)
             self.changed()
 
     def _done(self, plan: Plan, before: Variant) -> None:
-        """Keep what the verbs of a plan wrote."""
+        """Keep the files that the verbs of a plan wrote."""
         if plan.recordings:
             self.shelf.take([self.folder / plan.recordings])
             return
@@ -170,7 +170,7 @@ class Desk:
             self.changed()
 
     def say(self, problem: PneumoError | str) -> None:
-        """A sentence for the page; the next change takes it away."""
+        """A sentence for the page; the next change removes it."""
         with self.lock:
             self.changed()
             self.message = str(problem)

@@ -8,25 +8,25 @@ from pathlib import Path
 
 from pneumo_ros.workbench.desk import Desk, Given
 
-_MOST = 24  # desks; the one that was used longest ago goes first
+_MOST = 24  # desks; the least recently used one is closed first
 
 
 class Desks:
-    """Desks by identifier, in a temporary folder that vanishes with `close`."""
+    """Desks by identifier, in a temporary folder that `close` removes."""
 
     def __init__(self, given: Given) -> None:
         self.given = given
         self._root = tempfile.TemporaryDirectory(prefix="pneumo_workbench_")
         self._desks: dict[str, Desk] = {}
-        self._ready = ""  # a desk that is laid out and that nobody has taken yet
+        self._ready = ""  # a desk that is prepared and not used yet
         self._lock = threading.Lock()
 
     def prepare(self) -> None:
-        """Lay out a desk for the first who comes; raises what `Desk` raises."""
+        """Prepare a desk for the first visitor; raises what `Desk` raises."""
         self._ready = self._lay_out()
 
     def new(self) -> str:
-        """A new desk with what the command line gave; its identifier."""
+        """Make a desk with the arguments of the command line; returns its identifier."""
         with self._lock:
             ready, self._ready = self._ready, ""
         return ready or self._lay_out()

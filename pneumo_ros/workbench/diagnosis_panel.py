@@ -1,4 +1,4 @@
-"""What a diagnosis found: verdict, what was added, candidates with evidence, what remains, what to record next."""
+"""A diagnosis: verdict, added effects, candidates with evidence, what remains, what to record next."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The error step by step, from the machine as given down to the noise floor, and two variants side by side."""
+"""The error step by step, from the machine as given to the noise floor, and two variants side by side."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from pneumo_ros.workbench.parts import Panels, drop_down, revision, table
 from pneumo_ros.workbench.shown import content
 from pneumo_ros.workbench.variant import Compared, Variant, typical_error
 
-_EMPTY = "Press Compare, then tick an effect and press Refit: the error falls, or it does not."
+_EMPTY = "Press Compare, then tick an effect and press Refit to see whether the error falls."
 
 
 def layout() -> html.Div:
@@ -52,7 +52,7 @@ def judged_by(desk: Desk) -> tuple[list[str], str]:
 
 
 def course(desk: Desk) -> list[tuple[str, float]]:
-    """(name, error in noise floors) from the machine as given to the current one, as far as they were compared."""
+    """(name, error in noise floors) from the machine as given to the current one; only compared steps."""
     bags, steps = judged_by(desk)[0], list[tuple[str, float]]()
     for variant in desk.lineage():
         before = variant.made_by().get("course", [])
@@ -93,10 +93,10 @@ def _choices(desk: Desk, _revision: int) -> tuple[Any, ...]:
 
 
 def _pair(desk: Desk, _revision: int, first: int | None, second: int | None) -> list[Any]:
-    """Errors by signal, parameters that differ, and what made the second from the first."""
+    """Errors by signal, parameters that differ, and the command lines that make the second from the first."""
     pair = [desk.variants[k] for k in (first, second) if k is not None and k < len(desk.variants)]
     if len(pair) < 2 or pair[0] is pair[1] or not (pair[0].compared and pair[1].compared):
-        return [html.P("There are two to choose from once two variants have been compared.", className="soft")]
+        return [html.P("Compare two variants first, then choose them here.", className="soft")]
     heads = [f"{v.number}: {v.label}" for v in pair]
     errors = table(("", *heads, "change", "noise"), _errors(desk, pair[0].compared, pair[1].compared), "Error over 1 s")
     moved = table(("", *heads, "unit"), _parameters(desk, pair), "Parameters that differ")

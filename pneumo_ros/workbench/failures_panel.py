@@ -31,7 +31,7 @@ def register(panels: Panels) -> None:
 
 
 def render(desk: Desk, _revision: int) -> tuple[Any, str, str]:
-    """The sections of the current machine, its verdict, and the tone of that."""
+    """The sections of the current machine, its verdict, and the tone of the verdict."""
     from pneumo_ros.report.comparison import findings_section, overview_section
     from pneumo_ros.report.equations import equations_section
     from pneumo_ros.report.regimes import regimes_section

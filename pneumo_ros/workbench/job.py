@@ -1,4 +1,4 @@
-"""A job: verbs that run one after another in processes of their own, which report their progress and can be ended."""
+"""A job: verbs that run one after another, each in its own process; it reports progress and can be cancelled."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 State = Literal["running", "done", "failed", "cancelled"]
-# what `command.console.Progress` writes where there is no terminal
+# format of `command.console.Progress` without a terminal
 _PROGRESS = re.compile(r"(?P<title>[^:]+): (?P<percent>\d+) %(?:, about [^:]+ left)?(?:: (?P<doing>.*))?")
 _PATIENCE = 5.0  # s, for a verb to end after SIGTERM
 _LONGEST = 120  # letters of a message
@@ -30,7 +30,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Status:
-    """What there is to show of a job: `share` is 0 to 1, `left` [s] is None until it can be estimated."""
+    """The state of a job to show: `share` is 0 to 1, `left` [s] is None until it can be estimated."""
 
     title: str
     state: State
@@ -43,7 +43,7 @@ class Status:
 class Job:
     """Verbs in `folder`, one after another.
 
-    `done` is called in the job's own thread when all have ended well, `ended` after the end, whatever brought it.
+    `done` is called in the job's own thread when all have succeeded, `ended` after the end in every case.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Job:
         self._thread.start()
 
     def status(self) -> Status:
-        """What there is to show now."""
+        """The present state."""
         with self._lock:
             passed = (self._end or time.monotonic()) - self._start
             known = self._state == "running" and passed > _GUESS and 0.03 < self._share < 1.0
@@ -68,11 +68,11 @@ class Job:
 
     @property
     def running(self) -> bool:
-        """Whether it goes on."""
+        """Whether it still runs."""
         return self._state == "running"
 
     def cancel(self) -> None:
-        """End the verb that runs, and begin no other; what was there before stays as it was."""
+        """End the running verb, and start no other; earlier results stay as they were."""
         with self._lock:
             if self._state == "running":
                 self._finish("cancelled", "Cancelled; nothing was changed.")
@@ -102,7 +102,7 @@ class Job:
                 self._finish("done", "")
 
     def _verb(self, line: Line, begin: float, part: float) -> bool:
-        """Run one verb; whether the job goes on."""
+        """Run one verb; returns whether the job continues."""
         with self._lock:
             if self._state != "running":
                 return False

@@ -1,4 +1,4 @@
-"""The running job: what it does, how long it may still take, and a button that ends it.
+"""The running job: its present step, the time left, and a button that ends it.
 
 The page's script looks at the desk twice a second and after every action (`status_of`), and is the only one to set
 `revision`, on which all panels depend.
@@ -15,7 +15,7 @@ from pneumo_ros.workbench.parts import Panels, asked, button
 
 
 def layout() -> html.Div:
-    """The bar, and what the script sets."""
+    """The bar, and the stores that the script sets."""
     stores = [dcc.Store(id=name) for name in ("revision", "acted", "looked")]
     says = html.P("", id="job-says", role="status")
     bar = html.Progress(id="job-share", max="100", value="0", **{"aria-label": "Share done"})
@@ -37,7 +37,7 @@ def _cancel(desk: Desk, clicks: int | None) -> None:
 
 
 def status_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
-    """What the page's script wants to know: the revision, the job in words, and the tab to show for its result."""
+    """The state for the page's script: the revision, the job in words, and the tab to show for its result."""
     status = desk.job.status() if desk.job else None
     number, tab = desk.opened
     return {

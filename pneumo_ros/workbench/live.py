@@ -1,4 +1,4 @@
-"""A live axis: a watcher beside its nodes reports what it does, a recorder records it. Each is a process of its own."""
+"""A live axis: a watcher beside its nodes reports its signals, a recorder records them. Each is its own process."""
 
 import json
 import math
@@ -23,12 +23,12 @@ _NAME = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*")
 
 
 class Live:
-    """What an axis in `namespace` does, as its watcher reports it; UsageError for a bad name or without ROS."""
+    """Signals and status of the axis in `namespace` from its watcher; UsageError for a bad name or without ROS."""
 
     def __init__(self, namespace: str, folder: Path) -> None:
         require_ros()
         if not _NAMESPACE.fullmatch(namespace):
-            raise UsageError(f"'{namespace[:60]}' is no namespace; letters, digits and _ are, with / between")
+            raise UsageError(f"'{namespace[:60]}' is no namespace; use letters, digits and _, with / between names")
         self.namespace, self.folder = namespace, folder
         self.series: dict[str, deque[tuple[float, float]]] = {}
         self.status: dict[str, dict[str, Any]] = {}
@@ -68,7 +68,7 @@ class Live:
     def set(self, node: str, name: str, value: float) -> None:
         """Ask a node to take a value for a parameter; `answer` says whether it did. UsageError for a bad name."""
         if not _NAME.fullmatch(node) or not math.isfinite(value):
-            raise UsageError(f"'{node[:60]}' is no name of a node, such as simulator")
+            raise UsageError(f"'{node[:60]}' is not the name of a node, such as simulator")
         whole = node if node.startswith("/") else "/" + "/".join(part for part in (self.namespace, node) if part)
         self.answer = f"asking {whole} ..."
         assert self._watcher.stdin is not None

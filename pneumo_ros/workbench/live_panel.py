@@ -1,4 +1,4 @@
-"""The live tab: what a running axis does, its parameters, a record button and the constant-voltage campaign."""
+"""The live tab: signals of a running axis, its parameters, a record button and the constant-voltage campaign."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,7 +20,7 @@ _PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
     "pressure [kPa]": (("pressure_a", "model", 1e-3), ("pressure_b", "second", 1e-3)),
     "voltage [V]": (("voltage", "third", 1.0),),
 }
-_RESTS = 1e-3  # m/s: slower counts as rest
+_RESTS = 1e-3  # m/s; a slower piston sticks
 
 
 def layout() -> html.Div:
@@ -76,7 +76,7 @@ def _watch(desk: Desk, clicks: int | None, namespace: str | None) -> None:
 
 
 def _taken(desk: Desk) -> None:
-    """End a recording and lay it on the desk."""
+    """End a recording and add it to the desk."""
     path = desk.live.stop_recording() if desk.live else None
     if path is not None:
         desk.shelf.take([path])
@@ -86,7 +86,7 @@ def _record(desk: Desk, clicks: int | None) -> None:
     if not asked(clicks):
         return
     if desk.live is None:
-        raise UsageError("press Watch first: it says which axis is meant")
+        raise UsageError("press Watch first: it chooses the axis")
     if desk.live.recording is None:
         desk.live.record()
     else:
@@ -119,18 +119,18 @@ def _buttons(desk: Desk, _revision: int) -> tuple[str, str, bool, bool]:
 
 
 def live_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
-    """What the page's script shows of the axis: chart, sentence, what nodes say, and the answer to a setting."""
+    """The axis for the page's script: chart, sentence, status of the nodes, and the answer to a setting."""
     live = desk.live
     if live is None:
         return {"chart": None, "says": "", "status": "", "answer": ""}
     curves = live.curves()
-    says = state(curves) if curves else "Nothing is heard yet: does an axis run in this namespace?"
+    says = state(curves) if curves else "No messages yet: does an axis run in this namespace?"
     return {"chart": live_chart(curves) if curves else None, "says": says, "status": _status(live),
             "answer": live.answer}  # fmt: skip
 
 
 def state(curves: dict[str, tuple[list[float], list[float]]]) -> str:
-    """What the piston does, in a word: by its velocity, else by how far it got in half a second."""
+    """Whether the piston sticks or slides: by its velocity, else by its travel in half a second."""
     if "velocity" in curves:
         speed = abs(curves["velocity"][1][-1])
     else:
@@ -159,7 +159,7 @@ def _trace(name: str, role: str, factor: float, curve: tuple[list[float], list[f
 
 
 def _status(live: Live) -> Html:
-    """What every node says of itself."""
+    """The status that every node reports."""
     signs = ("good", "warning", "bad")
     rows = []
     for name, one in sorted(live.status.items()):

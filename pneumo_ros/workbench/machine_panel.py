@@ -1,4 +1,4 @@
-"""The machine: its variants, what to do with it, and its effects as check boxes."""
+"""The machine: its variants, the actions on it, and its effects as check boxes."""
 
 from functools import partial
 from itertools import groupby

@@ -1,4 +1,4 @@
-"""What the panels share: callbacks on the desk of the tab that asks, and controls with names."""
+"""What the panels share: callbacks on the desk of their tab, and controls with names."""
 
 from collections.abc import Callable, Sequence
 from functools import wraps
@@ -12,7 +12,7 @@ from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
 
 WHERE = State("url", "pathname")
-ACTED = Output("acted", "data", allow_duplicate=True)  # upon which the page looks at the desk
+ACTED = Output("acted", "data", allow_duplicate=True)  # makes the page look at the desk
 
 
 class Panels:
@@ -24,12 +24,12 @@ class Panels:
     def show(
         self, outputs: Sequence[Output], inputs: Sequence[Any], render: Callable[..., Any], *, first: bool = True
     ) -> None:
-        """`render(desk, *inputs)` gives the outputs whenever an input changes, and at first if `first`."""
+        """`render(desk, *inputs)` gives the outputs when an input changes, and at the start if `first`."""
 
         def drawn(desk: Desk, *values: Any) -> Any:
             try:
                 return render(desk, *values)
-            except PneumoError as problem:  # a file that was there is gone, say
+            except PneumoError as problem:  # for example, a file was deleted
                 if desk.message != str(problem):
                     desk.say(problem)
                 raise PreventUpdate from problem
@@ -37,7 +37,7 @@ class Panels:
         self.app.callback(list(outputs), list(inputs), WHERE, prevent_initial_call=not first)(self._on_desk(drawn))
 
     def act(self, inputs: Sequence[Any], do: Callable[..., None]) -> None:
-        """`do(desk, *inputs)` changes the desk when an input changes; what goes wrong is said on the page."""
+        """`do(desk, *inputs)` changes the desk when an input changes; the page shows errors."""
 
         def change(desk: Desk, *values: Any) -> int:
             before = desk.revision
@@ -46,7 +46,7 @@ class Panels:
             except PneumoError as problem:
                 desk.say(problem)
             if desk.revision == before:
-                raise PreventUpdate  # what is redrawn asks, too
+                raise PreventUpdate  # a redrawn control triggers it, too
             return desk.revision
 
         self.app.callback(ACTED, list(inputs), WHERE, prevent_initial_call=True)(self._on_desk(change))
@@ -64,7 +64,7 @@ class Panels:
 
 
 def revision() -> Input:
-    """What every panel that shows the desk depends on."""
+    """The input of every panel that shows the desk."""
     return Input("revision", "data")
 
 
@@ -80,7 +80,7 @@ def choice(legend: str, control: Any, *, visible: bool = True) -> html.Fieldset:
 
 
 def drop_down(label: str, identifier: str, **more: Any) -> html.Label:
-    """A list to choose one from, with its name."""
+    """A drop-down list with its name."""
     return html.Label([f"{label} ", html.Span(dcc.Dropdown(id=identifier, **more), className="drop-down")])
 
 

@@ -1,4 +1,4 @@
-"""What a button does, as the verbs that do it: the very command lines that a user could type."""
+"""The verbs that a button runs: the same command lines that a user could type."""
 
 import shlex
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ _EFFECT_LINE, _COMPARE_LINE, _DIAGNOSE_LINE = 6.0, 1.0, 12.0  # shares of a job'
 
 @dataclass(frozen=True)
 class Bench:
-    """What every verb is given: the recordings, how to read them, the machine file and files of effects."""
+    """Arguments of every verb: the recordings, how to read them, the machine file and files of effects."""
 
     bags: tuple[Bag, ...]
     how: ReadOptions
@@ -43,10 +43,10 @@ class Plan:
     title: str
     label: str
     lines: tuple[Line, ...]
-    bags: tuple[str, ...]  # that are compared, in this order
+    bags: tuple[str, ...]  # names of the compared recordings, in this order
     compared: str  # stem of the comparison's files
     machine: str = ""
-    recordings: str = ""  # folder of what is recorded
+    recordings: str = ""  # folder of new recordings
     made: str = ""  # stem of JSON and report of the verb that makes the machine
 
     def shown(self) -> tuple[str, ...]:
@@ -61,7 +61,7 @@ def compare_plan(bench: Bench, number: int) -> Plan:
 
 
 def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) -> Plan:
-    """Add `effects` and refit, or refit alone where there are none; write `machine`, and compare it."""
+    """Add `effects` and refit, or only refit without any; write `machine`, and compare it."""
     fit, held, made = bench.paths("fit"), bench.paths("hold"), f"made_{number}"
     if not fit:
         raise UsageError("no recording is marked 'fit'; mark one, then press Refit again")

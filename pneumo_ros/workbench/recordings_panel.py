@@ -11,7 +11,7 @@ from pneumo_ros.workbench.parts import Panels, asked, choice, revision
 
 
 def layout() -> html.Section:
-    """The place to drop files on, and the list."""
+    """The place to drop files, and the list."""
     choose = [
         html.Button(f"Choose {what}", type="button", **{"data-choose": kind})
         for kind, what in (("folder", "a folder"), ("files", "files"))
@@ -40,7 +40,7 @@ def register(panels: Panels) -> None:
 
 
 def render(desk: Desk, _revision: int, chosen: str | None, drawn: str | None) -> tuple[Any, str, Any]:
-    """Every recording, what was drawn, and which one is plotted; redrawn only where something changed."""
+    """The list, a text that changes with it, and the plotted recording; redrawn only after a change."""
     shown = desk.shelf.bag(chosen)
     name = shown.name if shown else None
     now = repr((desk.shelf.bags, name))
@@ -61,7 +61,7 @@ def _row(desk: Desk, k: int, bag: Bag, shown: bool) -> html.Div:
     cuts = [
         html.Button(
             f"cut {a:g}-{b:g} s \N{MULTIPLICATION SIGN}", id={"type": "uncut", "bag": k, "index": i}, type="button",
-            **{"aria-label": f"Take back the cut from {a:g} to {b:g} s of {bag.name}"},
+            **{"aria-label": f"Remove the cut from {a:g} to {b:g} s of {bag.name}"},
         )
         for i, (a, b) in enumerate(bag.cuts)
     ]  # fmt: skip

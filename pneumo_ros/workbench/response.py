@@ -15,13 +15,13 @@ from pneumo_ros.shooting.start import start_states
 
 Array = NDArray[np.float64]
 REACH = 4.0  # a slider goes from a quarter to four times a value
-STOPS = 100  # on either side of where it begins
+STOPS = 100  # steps to either side of the middle
 LONGEST = 10.0  # s that are simulated
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a run to simulate: where it begins and how many samples it has, and the state there (states,)."""
+    """A part of a run to simulate: its first sample, its number of samples, and the state at its start (states,)."""
 
     run: Run
     first: int
@@ -30,12 +30,12 @@ class Stretch:
 
     @property
     def time(self) -> Array:
-        """Of each simulated sample [s]."""
+        """Times of the simulated samples [s]."""
         return self.run.time[self.first + 1 : self.first + self.samples + 1]
 
 
 def stretch(model: Model, run: Run, begin: float, end: float) -> Stretch:
-    """The part of `run` from `begin` [s], at most 10 s; its start is estimated with `model` from what is around it."""
+    """The part of `run` from `begin` [s], at most 10 s; its start is estimated with `model` from the data around it."""
     first = min(max(round(begin / run.sample_time), 0), max(len(run) - 50, 0))
     samples = max(min(round(min(end - begin, LONGEST) / run.sample_time), len(run) - 1 - first), 2)
     return Stretch(run, first, samples, start_states(model, run, np.array([first]))[0])
@@ -53,7 +53,7 @@ def respond(model: Model, part: Stretch) -> dict[str, Array]:
 def slid(value: float, stop: int, known: Parameter) -> float:
     """The value of a parameter with its slider `stop` steps from the middle, where it is `value`.
 
-    By factors from a quarter to four; a parameter that is zero goes by its usual size, to either side.
+    By factors from a quarter to four; a parameter that is zero moves by its default, to either side.
     """
     moved = value * math.pow(REACH, stop / STOPS) if value else abs(known.default or 1.0) * stop / STOPS
     return min(max(moved, known.low), known.high)

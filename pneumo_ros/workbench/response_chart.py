@@ -22,12 +22,12 @@ def values_of(model: Model, stops: Mapping[str, Any]) -> dict[str, float]:
 
 
 def value_text(model: Model, name: str) -> str:
-    """A parameter as people read it: '80 N'."""
+    """A parameter with its unit: '80 N'."""
     return f"{number(model[name], 4)} {model.specification(name).unit}".removesuffix(" 1")
 
 
 def response_chart(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The chart and `values`, parameter -> text; None without recordings. Asked are run, span, stops and names.
+    """The chart and `values`, parameter -> text; None without recordings. `asked` has run, span, stops and names.
 
     Raises NumericalError when the machine diverges, UsageError for a value out of range.
     """

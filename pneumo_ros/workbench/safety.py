@@ -1,7 +1,7 @@
-"""Who may talk to the page: this machine, by the address it printed, from the page itself.
+"""Access to the page: only from this machine, with the printed address, and from the page itself.
 
-Any page in the same browser can send requests to 127.0.0.1, and can give that address a name of its own; hence three
-checks before anything else happens: the Host that was asked for, the Origin that asks, and a token.
+Any page in the same browser can send requests to 127.0.0.1, and can give that address another name. Three checks
+therefore come first: the Host of the request, its Origin, and a token.
 """
 
 import hmac
@@ -18,21 +18,21 @@ _ADVICE = "open the address that 'pneumo workbench' printed, with its token"
 
 
 class Guard:
-    """The checks of one server, and the cookie that stands for the token once it was shown."""
+    """The checks of one server, and the cookie that keeps the token after the first request."""
 
     def __init__(self, port: int, token: str | None = None) -> None:
         self.port, self.token = port, token or secrets.token_urlsafe(24)
-        self.cookie = f"pneumo_workbench_{port}"  # cookies do not know ports
+        self.cookie = f"pneumo_workbench_{port}"  # cookies are shared by all ports
 
     @property
     def address(self) -> str:
-        """What to open in a browser."""
+        """The address to open in a browser."""
         return f"http://{HOST}:{self.port}/?token={self.token}"
 
     def protect(self, server: Flask, begin: Callable[[], str], scripts: Sequence[str]) -> None:
-        """Check every request to `server`; a right token is led to `begin()`.
+        """Check every request to `server`; a right token is redirected to `begin()`.
 
-        `scripts`: hashes of the scripts that stand in the page itself, as a policy lists them.
+        `scripts`: hashes of the scripts inside the page, in the form of a policy.
         """
         policy = _policy(scripts)
 
@@ -57,7 +57,7 @@ class Guard:
         server.after_request(seal)
 
     def _foreign(self) -> str:
-        """Why a request comes from elsewhere; empty when it does not."""
+        """Why a request is foreign; empty when it is not."""
         hosts = [f"{name}:{self.port}" for name in _NAMES]
         if request.host not in hosts:
             return f"this server does not answer to the name {request.host[:80]!r}: {_ADVICE}"

@@ -1,4 +1,4 @@
-"""What to take away: the machine file, the report, and the command lines that lead there."""
+"""Results to save: the machine file, the report, and the command lines that make them."""
 
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ def layout() -> html.Div:
         [
             html.H2("Files"), html.Div(id="files", className="row"),
             html.H2("The same from a terminal"),
-            html.P("Whatever this page computes is a verb. In an empty folder, these lines do the same:"),
+            html.P("This page computes with verbs. In an empty folder, these lines do the same:"),
             html.Div(["Copy ", copy], className="row"),
             html.Pre("", id="commands", className="commands"),
         ],
@@ -32,7 +32,7 @@ def register(panels: Panels) -> None:
 
 
 def saved_files(desk: Desk) -> dict[str, tuple[str, Path]]:
-    """Name for the browser -> (what it is, where it lies), of the current machine."""
+    """Name for the browser -> (description, path), of the current machine."""
     variant, found = desk.variant, dict[str, tuple[str, Path]]()
     if (desk.folder / variant.machine).is_file():
         found[Path(variant.machine).name] = ("machine file", desk.folder / variant.machine)
@@ -52,7 +52,7 @@ def render(desk: Desk, _revision: int) -> tuple[Any, str]:
         for name, (what, _) in saved_files(desk).items()
     ]
     lines = commands(desk.lineage()) or f"# {desk.variant.machine} as it was given"
-    return links or html.P("Nothing was made yet: press Compare.", className="soft"), lines
+    return links or html.P("There are no files yet: press Compare.", className="soft"), lines
 
 
 def serve_files(server: Flask, desks: Desks) -> None:

@@ -26,7 +26,7 @@ def serve(given: Given, port: int, ready: Callable[[str], None]) -> None:
         guard = Guard(listening.getsockname()[1])
         desks.prepare()  # a wrong machine file is reported before anybody opens the page
         app = make_app(desks, guard)
-        logging.getLogger("waitress.queue").setLevel(logging.ERROR)  # a busy machine is no news
+        logging.getLogger("waitress.queue").setLevel(logging.ERROR)  # a busy machine is not worth a message
         server = create_server(app.server, sockets=[listening], threads=_THREADS, ident=None)
         ready(guard.address)
         server.run()
@@ -42,5 +42,5 @@ def _listen(port: int) -> socket.socket:
         listening.bind((HOST, port))
     except OSError as problem:
         listening.close()
-        raise UsageError(f"cannot listen on port {port}: {problem.strerror}; --port 0 takes any free one") from problem
+        raise UsageError(f"cannot listen on port {port}: {problem.strerror}; --port 0 takes any free port") from problem
     return listening

@@ -1,4 +1,4 @@
-"""The recordings of one desk: named apart, read, cut, and assigned to fit or hold-out."""
+"""The recordings of one desk: with different names, read, cut, and assigned to fit or hold-out."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -23,7 +23,7 @@ class Shelf:
         self._changed, self._lock = changed, threading.RLock()
 
     def take(self, paths: Iterable[str | Path]) -> None:
-        """Lay more recordings on the desk; those that cannot be read say why."""
+        """Add recordings to the desk; those that cannot be read hold the reason."""
         have = {self.path(bag) for bag in self.bags}
         new = [bag for bag in found_bags(paths, self.folder) if self.path(bag) not in have]
         seen = [replace(bag, problem=problem_of(self.path(bag), self.how, self.atmosphere)) for bag in new]
@@ -33,11 +33,11 @@ class Shelf:
             self._changed()
 
     def path(self, bag: Bag) -> Path:
-        """Where a recording lies."""
+        """The path of a recording."""
         return (self.folder / bag.path).resolve()
 
     def recording(self, bag: Bag) -> Recording:
-        """What a usable bag holds."""
+        """The content of a usable bag."""
         return read(self.path(bag), self.how, self.atmosphere)
 
     def bag(self, name: str | None) -> Bag | None:
@@ -55,12 +55,12 @@ class Shelf:
     def cut(self, name: str, begin: float, end: float) -> None:
         """Leave seconds of a recording out."""
         if not begin < end:
-            raise UsageError("zoom to what is to be cut first: drag across the plot")
+            raise UsageError("zoom to the part to cut first: drag across the plot")
         span = (round(max(begin, 0.0), 3), round(end, 3))
         self._change(name, lambda bag: replace(bag, cuts=tuple(sorted({*bag.cuts, span}))))
 
     def uncut(self, name: str, index: int) -> None:
-        """Take a cut back."""
+        """Remove a cut."""
         self._change(name, lambda bag: replace(bag, cuts=bag.cuts[:index] + bag.cuts[index + 1 :]))
 
     def _change(self, name: str, edit: Callable[[Bag], Bag]) -> None:

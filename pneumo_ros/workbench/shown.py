@@ -1,4 +1,4 @@
-"""Charts and sections of the report, as the page's script takes them."""
+"""Charts and sections of the report, in the form that the page's script takes."""
 
 from collections.abc import Sequence
 from typing import Any

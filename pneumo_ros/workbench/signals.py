@@ -1,4 +1,4 @@
-"""The plot of one run: what was measured, what variants of the machine predict, errors, input, regimes."""
+"""The plot of one run: measured and predicted signals, errors, input, regimes."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -24,7 +24,7 @@ _TALL, _LOW = 170, 110  # pixels of a panel
 
 @dataclass(frozen=True)
 class View:
-    """What is asked to be shown: signals and extras by name, the seconds in view, a regime to shade, cursors [s]."""
+    """The contents of the plot: signals and extras by name, the seconds in view, a regime to shade, cursors [s]."""
 
     shown: Collection[str]
     span: Span | None = None
@@ -33,7 +33,7 @@ class View:
 
 
 def signals_chart(bag: Bag, recording: Recording, view: View, variants: Mapping[str, Variant]) -> dict[str, Any]:
-    """The chart for the page's script. `variants`: role of the colour -> variant; those not compared show nothing."""
+    """The chart for the page's script. `variants`: role of the colour -> variant; without a comparison no curve."""
     lanes = [_lane(name, bag, recording, view, variants) for name in FIELDS if name in view.shown]
     panels = [panel for lane in lanes for panel in lane if panel["traces"]]
     if INPUT in view.shown:
@@ -106,7 +106,7 @@ def _panel(title: str, traces: list[dict[str, Any]], pixels: int) -> dict[str, A
 
 
 def _shades(bag: Bag, view: View, variants: Mapping[str, Variant]) -> list[dict[str, Any]]:
-    """Stretches behind the curves: one regime, and what is cut."""
+    """Shaded stretches behind the curves: one regime, and the cuts."""
     found = [{"from": begin, "to": end, "cut": True} for begin, end in bag.cuts]
     for variant in list(variants.values())[:1]:
         compared = variant.compared

@@ -12,7 +12,7 @@ from pneumo_ros.workbench.parts import Panels, asked, button, choice, drop_down,
 from pneumo_ros.workbench.signals import EXTRAS, INPUT
 
 _FIRST = [*SIGNALS, INPUT, "errors"]
-_EMPTY = "Drop a recording on the left, or start with some: pneumo workbench BAG..."
+_EMPTY = "Drop a recording on the left, or give it at the start: pneumo workbench BAG..."
 _MINUS = "\N{MINUS SIGN}"
 
 

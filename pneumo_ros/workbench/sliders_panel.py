@@ -1,4 +1,4 @@
-"""Sliders for every parameter, with the simulated response beside what was measured."""
+"""Sliders for every parameter, with the simulated and the measured response."""
 
 from typing import Any
 
@@ -16,8 +16,8 @@ _BUTTONS = {"reset": "Back to the values", "keep": "Keep as a variant"}
 def layout() -> html.Div:
     """The choice of a part of the machine, its sliders, and the response."""
     text = (
-        "The machine is simulated from a measured state over what is in view under Signals, at most 10 s of it, with "
-        "the measured voltage. A slider goes from a quarter of a value to four times it."
+        "The machine is simulated from a measured state over the view of the tab Signals, at most 10 s of it, with the "
+        "measured voltage. A slider goes from a quarter of a value to four times it."
     )
     parts = drop_down("Part of the machine", "section", clearable=False)
     return html.Div(
@@ -58,7 +58,7 @@ def _sections(desk: Desk, _revision: int, chosen: str | None) -> tuple[Any, str]
 def _draw(
     desk: Desk, section: str | None, _reset: int | None, _revision: int, moved: dict[str, int] | None, drawn: Any
 ) -> tuple[Any, Any, Any]:
-    """The sliders of a part; `moved` keeps the stops of all parts until they are kept or taken back."""
+    """The sliders of a part; `moved` holds the stops of all parts until they are kept or reset."""
     fresh = ctx.triggered_id == "reset" or (drawn or [None])[0] != desk.chosen
     now = [desk.chosen, section]
     if section is None or (not fresh and now == drawn):

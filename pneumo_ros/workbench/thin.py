@@ -1,4 +1,4 @@
-"""Long series as a screen shows them: what lies in view, two samples for each pixel, the smallest and the largest."""
+"""Long series for a screen: the part in view, two samples for each pixel, the smallest and the largest."""
 
 import base64
 from typing import Any
@@ -10,13 +10,13 @@ from pneumo_ros.report.series import extremes
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]
-ROOM = 1000  # pixels that a plot is wide
+ROOM = 1000  # width of a plot in pixels
 
 
 def in_view(x: Array, y: NDArray[Any], span: Span | None, room: int = ROOM) -> tuple[Array, Array]:
     """The part of y (n,) over increasing x (n,) in `span`, with a neighbour on both sides; all of it if None.
 
-    At most two samples for each of `room` pixels; single samples where so many fit.
+    At most two samples for each of `room` pixels; all samples if they fit.
     """
     first, last = 0, len(x)
     if span is not None:
@@ -30,7 +30,7 @@ def in_view(x: Array, y: NDArray[Any], span: Span | None, room: int = ROOM) -> t
 
 
 def packed(values: Array) -> dict[str, str]:
-    """An array as plotly reads it without parsing numbers: little-endian doubles in base64."""
+    """An array in plotly's binary form: little-endian doubles in base64."""
     return {
         "dtype": "f8",
         "bdata": base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode("ascii"),
@@ -38,7 +38,7 @@ def packed(values: Array) -> dict[str, str]:
 
 
 def stretches_in(time: Array, inside: NDArray[np.bool_], span: Span | None) -> list[Span]:
-    """From when to when `inside` (n,) holds, as far as it lies in `span`; stretches of less than a pixel are joined."""
+    """Stretches of `time` within `span` where `inside` (n,) holds; those less than a pixel apart are joined."""
     edges = np.diff(np.concatenate([[False], inside, [False]]).astype(np.int8))
     begin, end = time[np.flatnonzero(edges == 1)], time[np.flatnonzero(edges == -1) - 1]
     low, high = span or (float(time[0]), float(time[-1]))

@@ -13,20 +13,20 @@ from pneumo_ros.errors import UsageError
 LARGEST = 2 * 1024**3  # bytes of one file
 _MOST = 8 * 1024**3  # bytes of all files of a desk
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+ -]{0,120}")
-KINDS = (".mcap", ".db3", ".yaml")  # what recordings consist of
+KINDS = (".mcap", ".db3", ".yaml")  # files of recordings
 _CHUNK = 1 << 20
 
 
 def place(folder: Path, given: str) -> Path:
-    """Where a file goes that the browser calls `given`: `folder/NAME` or `folder/RECORDING/NAME`.
+    """The path for a file that the browser calls `given`: `folder/NAME` or `folder/RECORDING/NAME`.
 
-    UsageError for names that are not plain, for kinds that are no part of a recording, and for what would leave
+    UsageError for names that are not plain, for kinds that are no part of a recording, and for paths outside
     `folder`.
     """
     parts = [part for part in given.replace("\\", "/").split("/") if part]
-    kept = parts[-2:]  # a recording is a folder of files; what is above it does not matter
+    kept = parts[-2:]  # a recording is a folder of files; folders above it are dropped
     if not kept or any(not _NAME.fullmatch(part) or part.endswith(".") for part in kept):
-        raise UsageError(f"'{given[:80]}' is no plain file name: letters, digits, and . _ + - are")
+        raise UsageError(f"'{given[:80]}' is no plain file name; use letters, digits, and . _ + -")
     if Path(kept[-1]).suffix not in KINDS:
         raise UsageError(f"{kept[-1]} is no part of a recording; these are: {', '.join(KINDS)}")
     target = folder.joinpath(*kept).resolve()
@@ -36,7 +36,7 @@ def place(folder: Path, given: str) -> Path:
 
 
 def accept_uploads(server: Flask, folder_of: Callable[[str], Path]) -> None:
-    """PUT /upload/DESK/PATH stores a file; KeyError of `folder_of` is a desk that is not there."""
+    """PUT /upload/DESK/PATH stores a file; KeyError of `folder_of`: there is no such desk."""
 
     def store(desk: str, name: str) -> Response:
         try:
@@ -50,7 +50,7 @@ def accept_uploads(server: Flask, folder_of: Callable[[str], Path]) -> None:
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
             _write(target)
-        except OSError as problem:  # the disk filled up meanwhile
+        except OSError as problem:  # for example, the disk is full
             return Response(f"{target.name} cannot be kept: {problem.strerror}; open it by name: pneumo workbench", 507)
         return Response("", 204)
 

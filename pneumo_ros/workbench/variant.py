@@ -1,4 +1,4 @@
-"""Variants of a machine: where each came from, what made it, and how it compares with the recordings."""
+"""Variants of a machine: its parent, the verb that made it, and its comparison with the recordings."""
 
 import json
 import math
@@ -16,7 +16,7 @@ from pneumo_ros.plant import Model, load_model
 
 @dataclass(frozen=True)
 class Compared:
-    """What `pneumo compare` wrote of some bags, by name, in the order given: its JSON, its series and its report."""
+    """Output of `pneumo compare` for bags, by name, in the order given: its JSON, its series and its report."""
 
     bags: tuple[str, ...]
     json: Path
@@ -42,7 +42,7 @@ class Variant:
     """A machine file on a desk. `lines` are the command lines that make it from its parent; comments begin with #."""
 
     number: int
-    machine: str  # what --model takes, seen from the desk's folder
+    machine: str  # for --model, relative to the desk's folder
     label: str
     parent: int | None = None
     lines: tuple[str, ...] = ()
@@ -51,7 +51,7 @@ class Variant:
     compared: Compared | None = None
 
     def made_by(self) -> dict[str, Any]:
-        """The JSON of the verb that made it; empty where none did."""
+        """The JSON of the verb that made it; empty without one."""
         return _json(self.result) if self.result else {}
 
 
@@ -69,7 +69,7 @@ def _array(path: Path, key: str) -> NDArray[Any]:
 
 
 def model_of(machine: str, folder: Path, effects: Sequence[str]) -> Model:
-    """The model of a machine file seen from `folder`, or of a shipped one; UsageError as `load_model`."""
+    """The model of a machine file relative to `folder`, or of a shipped one; UsageError as `load_model`."""
     path = folder / machine
     return load_model(str(path) if path.is_file() else machine, effects_files=tuple(effects))
 

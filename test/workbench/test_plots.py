@@ -64,7 +64,7 @@ def test_a_regime_is_shaded_and_a_cut_taken_back(tab: Tab) -> None:
         tab.page.wait_for_timeout(50)
     assert tab.page.locator("#signals").evaluate(shapes) > 0
     tab.press("Cut what is in view")
-    tab.see("#message", "zoom to what is to be cut first")
+    tab.see("#message", "zoom to the part to cut first")
     tab.drag(0.5, 0.75)
     tab.wait_for_traces(lambda found: span_of(found[0])[0] > 0.4 * SECONDS)
     tab.press("Cut what is in view")

@@ -32,7 +32,7 @@ _VALVE = (
     Setting("dead_zone.right_slope", 1.0, "slope beyond the right limit", "V/V", 0.01, 100.0),
     Setting("dead_zone.left_slope", 1.0, "slope beyond the left limit", "V/V", 0.01, 100.0),
     Setting(
-        "valve.smoothing", SMOOTHING, "opening at which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
+        "valve.smoothing", SMOOTHING, "opening by which the jump across the dead zone is complete", "V", 0.0, SMOOTHEST
     ),
 )
 EFFECTS = "effects"

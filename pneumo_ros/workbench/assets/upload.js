@@ -43,7 +43,7 @@
     if (place) place.classList.toggle("over", Boolean(inside(event)));
   });
   document.addEventListener("drop", async (event) => {
-    event.preventDefault(); // a file dropped beside the place must not replace the page
+    event.preventDefault(); // a file dropped elsewhere must not replace the page
     document.getElementById("drop").classList.remove("over");
     if (!inside(event)) return;
     const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter(Boolean);

@@ -1,4 +1,4 @@
-// What the page does in the browser: charts in the report's own way of drawing, its sections, and tabs.
+// The page in the browser: charts drawn as in a report, sections of a report, and tabs.
 "use strict";
 window.dash_clientside = window.dash_clientside || {};
 window.dash_clientside.bench = (() => {
@@ -20,7 +20,7 @@ window.dash_clientside.bench = (() => {
   async function draw(div, chart) {
     charts.set(div, chart);
     while (!window.Plotly) await new Promise((done) => setTimeout(done, 50));
-    if (!div.isConnected || charts.get(div) !== chart) return; // a later one overtook it
+    if (!div.isConnected || charts.get(div) !== chart) return; // a later chart has replaced it
     const width = Math.max(Math.round(div.clientWidth), 300);
     if (chart.height) div.style.height = `${chart.height}px`;
     const data = await Plots.traces(chart, null, width);
@@ -53,7 +53,7 @@ window.dash_clientside.bench = (() => {
     return content.stamp;
   }
 
-  // A chart that the server makes for what is asked; a sentence instead where it cannot.
+  // A chart that the server makes for a request, or a sentence on why it cannot.
   async function fetched(what, asked) {
     const desk = location.pathname.split("/").pop();
     const answer = await fetch(`/${what}/${desk}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(asked) });
@@ -113,7 +113,7 @@ window.dash_clientside.bench = (() => {
 
   async function response() {
     waiting = busy;
-    if (busy) return; // the answer to the last question brings on the next
+    if (busy) return; // the end of the last request starts the next one
     busy = true;
     const outputs = [...document.querySelectorAll("#sliders [data-told]")];
     const [chart, problem] = await fetched("response", { ...place, stops, names: outputs.map((one) => one.dataset.told) });
@@ -145,7 +145,7 @@ window.dash_clientside.bench = (() => {
   });
 
   // --- the page ----------------------------------------------------------------------------------------------------
-  // Looks at the desk: what runs, and whether there is something new to show.
+  // Asks the desk what runs, and whether there is something new to show.
   const seen = { revision: null, says: null, share: null, running: null, opened: 0 };
   let looking = false;
 
@@ -167,7 +167,7 @@ window.dash_clientside.bench = (() => {
       set("revision", now.revision, ["revision", { data: now.revision }]);
       if (now.opened !== seen.opened) set("opened", now.opened, ["tab", { value: now.tab }]);
     } catch (error) {
-      const text = "The workbench does not answer; was it ended?";
+      const text = "The workbench does not answer; has it ended?";
       set("says", text, ["job-says", { children: text }], ["job", { hidden: false }], ["cancel", { hidden: true }]);
     } finally {
       looking = false;
@@ -200,7 +200,7 @@ window.dash_clientside.bench = (() => {
 
   function tab(value) {
     document.querySelectorAll(".panel").forEach((panel) => { panel.hidden = panel.id !== `panel-${value}`; });
-    setTimeout(() => window.dispatchEvent(new Event("resize")), 0); // plots take the width they now have
+    setTimeout(() => window.dispatchEvent(new Event("resize")), 0); // plots adapt to their new width
     return value;
   }
 
