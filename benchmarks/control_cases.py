@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pneumo_ros.command.trials import SAMPLE_TIME, stepper
+from pneumo_ros.command.rated_motions import SAMPLE_TIME, stepper
 from pneumo_ros.control import Law, Measurement, Record, Reference, closed_loop
 from pneumo_ros.control.control_file import load_control
 from pneumo_ros.control.reference import moves, sine

@@ -3,7 +3,7 @@
 import numpy as np
 from control_cases import AXIS, SINE, SINE_BEGIN, SINE_SECONDS, follow, shipped
 
-from pneumo_ros.command.trials import SAMPLE_TIME, stepper
+from pneumo_ros.command.rated_motions import SAMPLE_TIME, stepper
 from pneumo_ros.control.figures import Tracking, tracking
 from pneumo_ros.control.reference import moves, sine
 from pneumo_ros.diagnose.diagnosis import diagnose

@@ -11,13 +11,13 @@ from functools import partial
 
 from control_cases import AXIS, HERE, SINE
 
-from pneumo_ros.command.trials import stepper
+from pneumo_ros.command.rated_motions import stepper
 from pneumo_ros.control import Law
 from pneumo_ros.control.control_file import Control, load_control
-from pneumo_ros.control.tuning import Search, Trial, costs_here
+from pneumo_ros.control.tuning import RatedMotion, Search, costs_here
 
 EVALUATIONS = 80  # as `pneumo tune`
-ALONE = Trial(partial(stepper, AXIS), SINE, 24.0, 4.0)  # the first fifth of a period is not judged, as there
+ALONE = RatedMotion(partial(stepper, AXIS), SINE, 24.0, 4.0)  # the first fifth of a period is not judged, as there
 
 
 def found(law: str) -> Control:

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from pneumo_ros.command.trials import Task, trials_of
+from pneumo_ros.command.rated_motions import Task, rated_motions
 from pneumo_ros.control.control_file import Control
-from pneumo_ros.control.tuning import Costs, Gains, Trial, cost
+from pneumo_ros.control.tuning import Costs, Gains, RatedMotion, cost
 from pneumo_ros.errors import NumericalError
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.sweep import Pool, sweep
@@ -36,14 +36,14 @@ def costs_over(pool: Pool, start: Control, tuned: Tuned) -> Costs:
 
 def run_cost(tuned: Tuned, control: tuple[str, dict[str, float], float], run: int) -> float:
     """Cost of one run: law, gains and smoothing in `control`, the run by its number."""
-    machine, trials = _prepared(tuned)
+    machine, motions = _prepared(tuned)
     law, gains, smoothing = control
-    return cost(Control(law, gains, smoothing).make(machine.effects, machine.parameters), [trials[run]])
+    return cost(Control(law, gains, smoothing).make(machine.effects, machine.parameters), [motions[run]])
 
 
 @lru_cache(1)
-def _prepared(tuned: Tuned) -> tuple[Model, list[Trial]]:
-    """Machine and trials of one tuning; a worker keeps them."""
+def _prepared(tuned: Tuned) -> tuple[Model, list[RatedMotion]]:
+    """Machine and motions of one tuning; a worker keeps them."""
     model, effects, task, spool = tuned
     machine = load_model(model, effects_files=effects)
-    return machine, trials_of(machine, Task(*task), spool)
+    return machine, rated_motions(machine, Task(*task), spool)

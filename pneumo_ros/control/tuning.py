@@ -25,7 +25,7 @@ Costs = Callable[[Sequence[Gains]], Sequence[float]]
 
 
 @dataclass(frozen=True)
-class Trial:
+class RatedMotion:
     """A motion on a plant: a reference followed from `begin` [s] on, or moves that are each held for `hold` [s]."""
 
     plant: Callable[[], SteppedPlant]
@@ -44,25 +44,25 @@ class Weights:
     settled: float = 0.2
 
 
-def cost(law: Law, trials: Sequence[Trial], weights: Weights | None = None) -> float:
-    """Mean cost of `law` over `trials`; smaller is better, and the same law costs the same."""
-    return sum(_cost_of(law, trial, weights or Weights()) for trial in trials) / len(trials)
+def cost(law: Law, motions: Sequence[RatedMotion], weights: Weights | None = None) -> float:
+    """Mean cost of `law` over `motions`; smaller is better, and the same law costs the same."""
+    return sum(_cost_of(law, motion, weights or Weights()) for motion in motions) / len(motions)
 
 
-def _cost_of(law: Law, trial: Trial, weights: Weights) -> float:
+def _cost_of(law: Law, motion: RatedMotion, weights: Weights) -> float:
     law.reset()
-    plant = trial.plant()
+    plant = motion.plant()
     try:
         record = closed_loop(
-            plant, law, trial.reference, round(trial.seconds / plant.sample_time), NoisySensors(seed=NOISE_SEED)
+            plant, law, motion.reference, round(motion.seconds / plant.sample_time), NoisySensors(seed=NOISE_SEED)
         )
     except NumericalError:
         return WORST
-    seen = tracking(record, trial.begin)
-    if trial.hold is None:
-        return min(seen.rms / trial.unit + weights.activity * seen.activity, WORST)
-    ends = arrivals(record, trial.hold, trial.unit)
-    errors = sum(min(end.error / trial.unit, 10.0) + weights.settled * end.settling for end in ends) / len(ends)
+    seen = tracking(record, motion.begin)
+    if motion.hold is None:
+        return min(seen.rms / motion.unit + weights.activity * seen.activity, WORST)
+    ends = arrivals(record, motion.hold, motion.unit)
+    errors = sum(min(end.error / motion.unit, 10.0) + weights.settled * end.settling for end in ends) / len(ends)
     return min(errors + weights.activity * seen.activity, WORST)
 
 
@@ -129,6 +129,6 @@ class Search:
         return self.least < before
 
 
-def costs_here(make: Callable[[Gains], Law], trials: Sequence[Trial]) -> Costs:
+def costs_here(make: Callable[[Gains], Law], motions: Sequence[RatedMotion]) -> Costs:
     """Costs found one after another, in this process."""
-    return lambda many: [cost(make(gains), trials) for gains in many]
+    return lambda many: [cost(make(gains), motions) for gains in many]

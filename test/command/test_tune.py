@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pneumo_ros.command.main import main
-from pneumo_ros.command.trials import begin_at, harsher, task_for, top_speed, trials_of
+from pneumo_ros.command.rated_motions import begin_at, harsher, rated_motions, task_for, top_speed
 from pneumo_ros.control.control_file import load_control
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
@@ -85,7 +85,7 @@ def test_the_other_machine_is_heavier_and_stickier_and_one_without_lugre_frictio
     assert "valve_spool_dynamics" not in harsher(AXIS).effects
     assert harsher(AXIS, 400.0)["valve_spool_dynamics.angular_frequency"] == 400.0
     bare = AXIS.with_effects(["dead_zone", "arctan_flow", "quadratic_drag", "end_stop"])
-    assert len(trials_of(bare, task_for(bare))) == 4
+    assert len(rated_motions(bare, task_for(bare))) == 4
 
 
 def test_trials_begin_in_balance() -> None:

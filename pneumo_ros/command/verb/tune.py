@@ -12,7 +12,7 @@ from pneumo_ros.files import check_writable, write_whole
 from pneumo_ros.nearest import unknown_name
 
 if TYPE_CHECKING:
-    from pneumo_ros.command.trials import Task
+    from pneumo_ros.command.rated_motions import Task
     from pneumo_ros.control.control_file import Control
     from pneumo_ros.control.tuning import Search
     from pneumo_ros.plant import Model
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """Tune, write the control file, print the cost and the changes."""
-    from pneumo_ros.command.trials import task_for
+    from pneumo_ros.command.rated_motions import task_for
     from pneumo_ros.control.control_file import Control
 
     _check(options)

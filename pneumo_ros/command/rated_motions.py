@@ -1,4 +1,4 @@
-"""Trials to tune a control law: a sine and moves, on the machine and on a harsher one."""
+"""Motions that rate a control law: a sine and moves, on the machine and on a harsher one."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pneumo_ros.control.reference import moves, sine
-from pneumo_ros.control.tuning import Trial
+from pneumo_ros.control.tuning import RatedMotion
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Stepper
 
@@ -105,7 +105,7 @@ def harsher(model: "Model", spool: float | None = None) -> "Model":
     return other.with_effects([*effects, SPOOL], {f"{SPOOL}.angular_frequency": spool})
 
 
-def trials_of(model: "Model", task: Task, spool: float | None = None) -> list[Trial]:
+def rated_motions(model: "Model", task: Task, spool: float | None = None) -> list[RatedMotion]:
     """The sine and six moves, each on the machine and on the harsher one."""
     period, levels = 1.0 / task.frequency, [k * task.step for k in (-1, 0, -1, 0, 1, 0, -1)]
     whole = max(np.ceil(JUDGED / period), 1.0)
@@ -113,6 +113,8 @@ def trials_of(model: "Model", task: Task, spool: float | None = None) -> list[Tr
     hold = HOLD + task.duration
     found = []
     for machine in (model, harsher(model, spool)):
-        found.append(Trial(partial(stepper, machine), wave, (whole + RUN_UP) * period, RUN_UP * period))
-        found.append(Trial(partial(stepper, machine, levels[0]), ways, len(levels) * hold, hold=hold, unit=TOLERANCE))
+        found.append(RatedMotion(partial(stepper, machine), wave, (whole + RUN_UP) * period, RUN_UP * period))
+        found.append(
+            RatedMotion(partial(stepper, machine, levels[0]), ways, len(levels) * hold, hold=hold, unit=TOLERANCE)
+        )
     return found
