@@ -25,6 +25,8 @@ RIG ?= ../shared/rig
 
 # A sourced ROS 2 distribution must not reach into the environment, nor the marks of another environment's wheels.
 unexport PYTHONPATH PYTHONHOME LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+# Tests start hundreds of Python processes: each would compile every module again.
+unexport PYTHONDONTWRITEBYTECODE
 unexport AMENT_PREFIX_PATH COLCON_PREFIX_PATH CMAKE_PREFIX_PATH
 unexport ROS_DISTRO ROS_VERSION ROS_PYTHON_VERSION RMW_IMPLEMENTATION
 
