@@ -127,6 +127,7 @@ def test_they_agree_on_a_worn_machine():
     assert np.all(np.abs(x[1:] - exact).max(axis=0) < [1e-9, 1e-7, 1e-3, 1e-3, 1e-10])
 
 
+@pytest.mark.check
 def test_the_fixed_step_is_fine_enough():
     difference = fixed_step(MANOEUVRE) - fixed_step(MANOEUVRE, 5e-6)
     assert np.all(np.abs(difference).max(axis=0) < [1e-10, 1e-8, 1e-4, 1e-4, 1e-11])

@@ -15,6 +15,7 @@ FAULTS = (
 )
 
 
+@pytest.mark.check
 def test_faults_leave_everything_in_order(tmp_path: Path) -> None:
     faults = [name for name in FAULTS if name in kinds(tmp_path)[0]]
     outcome = campaign(tmp_path, len(faults), 5, 120.0, faults)

@@ -65,7 +65,9 @@ def test_joint_commands_are_looked_up_by_name_and_the_neighbour_stays(stack: Sta
 @pytest.mark.parametrize("qos", [BEST_EFFORT, RELIABLE], ids=["best effort", "reliable"])
 def test_publishers_of_either_reliability_are_heard(stack: Stack, left: AxisProbe, qos: object) -> None:
     wanted = 0.02 if qos is BEST_EFFORT else 0.03
-    left.command_joints(["piston"], [wanted], [math.nan], qos)  # a command interface that nobody has claimed is NaN
+    for _ in range(10):  # one message of a best-effort publisher may be lost on a busy machine
+        left.command_joints(["piston"], [wanted], [math.nan], qos)  # a command interface that nobody has claimed is NaN
+        time.sleep(0.05)
     left.arrives(wanted)
 
 

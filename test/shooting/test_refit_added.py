@@ -52,6 +52,7 @@ def test_a_refit_that_goes_on_ends_as_low_as_one_from_the_default() -> None:
     assert added().costs[-1] < 1.001 * cold.costs[-1]
 
 
+@pytest.mark.check
 def test_priors_stay_where_they_were_when_a_refit_goes_on() -> None:
     """Priors are the knowledge before any data, not the earlier refit, which would count the same data twice."""
     _, _, before = base()
@@ -60,6 +61,7 @@ def test_priors_stay_where_they_were_when_a_refit_goes_on() -> None:
             assert (estimate.before, estimate.prior) == (load_model()[name], before.estimates[name].prior)
 
 
+@pytest.mark.check
 def test_a_refit_that_goes_on_from_itself_stays() -> None:
     _, run, _ = base()
     again = refit(added().model, [run], start=added())

@@ -86,9 +86,9 @@ def test_a_node_is_a_name_and_a_value_a_number(tmp_path: Path) -> None:
     pytest.importorskip("rclpy", reason="comes with ROS 2, or with the extra 'ros'")
     live = Live("cylinder", tmp_path)
     try:
-        with pytest.raises(UsageError, match="no name of a node"):
+        with pytest.raises(UsageError, match="is not the name of a node"):
             live.set("../simulator", COULOMB, 1.0)
-        with pytest.raises(UsageError, match="no name of a node"):
+        with pytest.raises(UsageError, match="is not the name of a node"):
             live.set("simulator", COULOMB, float("nan"))
     finally:
         live.close()
