@@ -1,1 +1,1 @@
-"""Recordings as runs, and whether they can be what they say: wiring, signs, units, dead sensors, idle parts."""
+"""Recordings as runs, and checks of them: wiring, signs, units, dead sensors, idle parts."""

@@ -1,4 +1,4 @@
-"""A recording on disk, whatever its storage: its messages in blocks, or one after another in recorded time."""
+"""A recording on disk, of any storage format: its messages in blocks, or one by one in recorded time."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,7 +23,7 @@ class Message(NamedTuple):
 
 
 class Overview(NamedTuple):
-    """What a recording holds: times in ns; `counts` are messages per topic; `latched` those of latched topics."""
+    """Contents of a recording: times in ns; `counts`: messages per topic; `latched`: messages of latched topics."""
 
     start: int
     end: int
@@ -44,7 +44,7 @@ class Bag:
         self._earliest: list[int] = []  # time of each block, once known
 
     def blocks(self) -> Iterator[Block]:
-        """Blocks with at least one message, in the order of the files; may be asked for more than once."""
+        """Blocks with at least one message, in the order of the files; can be called again."""
         self._sources, self.warnings = find_sources(self.path)
         for source in self._sources:
             yield from (block for block in source.blocks() if len(block.channel))
@@ -65,12 +65,12 @@ class Bag:
         return seen._replace(start=min(first), end=max(last))
 
     def messages(self, since: int = EVER) -> Iterator[Message]:
-        """Every message in recorded time, those of equal times in the order of the file; a few blocks in memory.
+        """Every message in the order of recorded time, then of the file; only a few blocks are in memory.
 
-        Those recorded before `since` [ns] are left out.
+        Messages recorded before `since` [ns] are left out.
         """
         earliest = self._earliest or [int(block.log_time.min()) for block in self.blocks()]
-        # After block k nothing earlier than this can follow: files and chunks may overlap.
+        # No message after block k is earlier than this; files and chunks may overlap.
         horizons = np.minimum.accumulate(np.array([*earliest, np.iinfo(np.int64).max])[::-1])[::-1][1:]
         waiting: list[tuple[int, Block, int]] = []
         for block, horizon in zip(self.blocks(), horizons.tolist(), strict=False):  # the file may have grown since
@@ -89,7 +89,7 @@ class Bag:
 
 
 def _survey(block: Block, seen: Overview) -> None:
-    """Add a block's channels, counts and latched messages to what was seen before."""
+    """Add a block's channels, counts and latched messages to `seen`."""
     numbers, amounts = np.unique(block.channel, return_counts=True)
     for number, amount in zip(numbers.tolist(), amounts.tolist(), strict=True):
         channel = block.channels[number]
@@ -101,6 +101,6 @@ def _survey(block: Block, seen: Overview) -> None:
 
 
 def is_latched(channel: Channel) -> bool:
-    """Whether a topic was, or by the contract should have been, offered to late subscribers."""
+    """Whether a topic was latched, or should have been by the contract."""
     found = split(channel.topic)
     return channel.latched or (found is not None and found[1] in LATCHED)

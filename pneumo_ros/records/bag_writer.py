@@ -1,4 +1,4 @@
-"""Serialized messages into a rosbag2 folder that is whole at any time."""
+"""Writes serialized messages into a rosbag2 folder that is valid at any time."""
 
 import time
 from collections.abc import Iterable
@@ -17,21 +17,21 @@ from pneumo_ros.records.message_types import definition_of
 from pneumo_ros.records.metadata import BagTopic, Contents, as_yaml, information, write_metadata
 
 FLUSH = 0.5  # [s] between chunks: a killed recorder loses no more
-DESCRIBE = 1.0  # [s] between two states of metadata.yaml
+DESCRIBE = 1.0  # [s] between two updates of metadata.yaml
 
 
 class BagWriter:
     """Writes a new rosbag2 folder with one MCAP file, zstd compressed. A context manager.
 
-    Twice a second the messages reach the disk, in a file that other readers accept as it is, provided that `write` or
-    `flush_if_due` is called at least that often. `kill -9` then costs the last half second at most.
+    Messages reach the disk twice a second if `write` or `flush_if_due` is called at least that often; other readers
+    accept the file at any time. `kill -9` then costs the last half second at most.
     """
 
     def __init__(self, path: str | Path, topics: Iterable[BagTopic] = ()) -> None:
         """Create the folder. Raises DataError when `path` exists or cannot be written, UsageError for unknown types."""
         self.path = Path(path)
         self.counts: dict[str, int] = {}  # messages per topic
-        self._topics: dict[str, tuple[BagTopic, str, int]] = {}  # with the hash of the type and the channel
+        self._topics: dict[str, tuple[BagTopic, str, int]] = {}  # by name, with the hash of the type and the channel
         self._schemas: dict[str, int] = {}
         self._span: tuple[int, int] | None = None
         self._due = self._describe_due = 0.0
@@ -47,7 +47,7 @@ class BagWriter:
         self.flush()
 
     def add_topic(self, topic: BagTopic) -> None:
-        """Make `topic` known. Raises UsageError for a type without definition or a topic of another type."""
+        """Register `topic`. Raises UsageError for a type without definition, or a topic of another type."""
         if topic.name in self._topics:
             known = self._topics[topic.name][0].type
             if known != topic.type:
@@ -78,12 +78,12 @@ class BagWriter:
         self.flush_if_due()
 
     def flush_if_due(self) -> None:
-        """Flush when the last time is half a second ago. Raises DataError when the disk is full."""
+        """Flush when the last flush was half a second ago. Raises DataError when the disk is full."""
         if time.monotonic() >= self._due:
             self.flush()
 
     def flush(self) -> None:
-        """Bring everything to the disk now. Raises DataError when the disk is full."""
+        """Write everything to the disk now. Raises DataError when the disk is full."""
         self._due = time.monotonic() + FLUSH
         try:
             self._writer.flush()  # type: ignore[no-untyped-call]  # mcap annotates only some of its methods
@@ -93,7 +93,7 @@ class BagWriter:
             raise self._failed(error) from error
 
     def close(self) -> None:
-        """Write index and end. Raises DataError when the disk is full. Further calls do nothing."""
+        """Write the index and the end of the file. Raises DataError when the disk is full. Further calls do nothing."""
         if self._closed:
             return
         self._closed = True
@@ -121,7 +121,7 @@ class BagWriter:
             raise self._failed(error) from error
 
     def _describe(self) -> None:
-        """Rewrite metadata.yaml when its state is a second old."""
+        """Rewrite metadata.yaml when it is a second old."""
         if time.monotonic() >= self._describe_due:
             self._describe_due = time.monotonic() + DESCRIBE
             write_metadata(self.path, self._information())
@@ -132,7 +132,7 @@ class BagWriter:
         return information(Contents(self._name, topics, first, last))
 
     def _failed(self, error: OSError) -> DataError:
-        lost = f" The last {self._waiting} messages are lost; those before are in it." if self._waiting else ""
+        lost = f" The last {self._waiting} messages are lost; earlier ones are saved." if self._waiting else ""
         return DataError(f"Cannot write {self.path}: {error.strerror}.{lost}")
 
 

@@ -1,4 +1,4 @@
-"""What every storage format is reduced to: blocks of serialized messages and the channels they belong to."""
+"""The common form of all storage formats: blocks of serialized messages, and their channels."""
 
 from mmap import mmap
 from typing import NamedTuple
@@ -11,7 +11,7 @@ Integers = NDArray[np.int64]
 
 
 class Channel(NamedTuple):
-    """Where a message was published, and how its bytes are to be read."""
+    """Where a message was published, and how to read its bytes."""
 
     topic: str
     type: str
@@ -22,7 +22,7 @@ class Channel(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Messages that lie in one buffer, in the order of the file; all arrays have one entry per message."""
+    """Messages in one buffer, in the order of the file; all arrays have one entry per message."""
 
     data: Buffer
     channels: dict[int, Channel]

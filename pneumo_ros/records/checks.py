@@ -1,4 +1,4 @@
-"""What may be wrong with a recording that can be read: each check returns sentences, none when all is well."""
+"""Faults of readable recordings: each check returns sentences, or none when all is well."""
 
 from collections.abc import Collection, Iterable
 
@@ -8,8 +8,8 @@ from pneumo_ros.records.block import Integers
 from pneumo_ros.records.series import Series
 
 GAP = 5.0  # sample times between two samples that count as a gap
-APART = 0.1  # s between the clocks of two topics that transport does not explain
-FEWEST = 10  # samples a recording is good for anything with
+APART = 0.1  # s between the clocks of two topics: more than transport explains
+FEWEST = 10  # fewest samples in which gaps are looked for
 
 
 def gaps(series: Series) -> list[str]:
@@ -23,13 +23,13 @@ def gaps(series: Series) -> list[str]:
     many = "1 gap" if len(wide) == 1 else f"{len(wide)} gaps"
     return [
         f"{series.topic}: {many} of more than {GAP:g} sample times ({GAP * np.median(steps) * 1e3:.3g} ms), "
-        f"the longest {steps[longest]:.3g} s at {at:.3f} s, {steps[wide].sum():.3g} s in all; what lies in a "
+        f"the longest {steps[longest]:.3g} s at {at:.3f} s, {steps[wide].sum():.3g} s in all; data in a "
         "gap is not used."
     ]
 
 
 def outside_gaps(series: Series, others: Iterable[Series]) -> Series:
-    """`series` without what lies in a gap of one of `others`: there, values between messages would be made up."""
+    """`series` without the samples in a gap of one of `others`: interpolated values there would be invented."""
     inside = np.zeros(len(series), dtype=bool)
     for one in others:
         wide = _wide(one)

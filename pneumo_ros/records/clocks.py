@@ -1,4 +1,4 @@
-"""Clocks that were set while a recording ran: the longest part in which time goes on is what can be used."""
+"""Clocks that were set during a recording: only the longest part without a jump can be used."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -11,14 +11,14 @@ from pneumo_ros.records.recording import Array
 from pneumo_ros.records.series import Series
 from pneumo_ros.records.topic_data import set_back
 
-BACK = 0.1  # s that messages out of order do not fall back
-JUMP = 1.0  # s between stamps and recorded times that neither transport nor a busy recorder explains
-PAUSE = 10.0  # s without messages that are better not bridged
-_STRAY = 10  # messages in a row that may have wrong stamps by themselves
+BACK = 0.1  # s: messages out of order fall back by less
+JUMP = 1.0  # s between stamps and recorded times: more than transport or a busy recorder causes
+PAUSE = 10.0  # s without messages: too long to bridge
+_STRAY = 10  # messages in a row: fewer can be strays, of which only the stamps are wrong
 
 
 class Jump(NamedTuple):
-    """A place where time does not go on: index of the first message after it, and how far both clocks move [s]."""
+    """A jump in time: index of the first message after it, and how far both clocks move there [s]."""
 
     first: int
     stamp: float
@@ -26,9 +26,9 @@ class Jump(NamedTuple):
 
 
 def jumps(stamp: Integers, log_time: Integers) -> list[Jump]:
-    """Places in stamps and recorded times (n,) [ns], in the order of recording, where a clock was set or time is lost.
+    """Places where a clock was set or time is lost; stamps and recorded times (n,) [ns] in the order of recording.
 
-    Stamps may run at another rate than the recorded time, as simulated time does, and that may stand still meanwhile.
+    Stamps may run at another rate than the recorded time, as simulated time does; simulated time may also stand still.
     """
     if len(stamp) < 2:
         return []
@@ -41,7 +41,7 @@ def jumps(stamp: Integers, log_time: Integers) -> list[Jump]:
 
 
 def _usual(steps: Array) -> float:
-    """Time that passes in all steps, without jumps [s]."""
+    """Time that passes in all steps [s], each limited to 0 to JUMP."""
     return float(np.sum(np.clip(steps, 0.0, JUMP)))
 
 
@@ -63,7 +63,7 @@ def without_strays(series: Series, warn: Callable[[str], None]) -> Series:
 
 
 def _go_on(series: Series, first: int, last: int) -> bool:
-    """Whether time goes on as if the messages from `first` to before `last` were not there."""
+    """Whether time has no jump without the messages from `first` to before `last`."""
     around = [first - 1, last]
     return not jumps(series.stamp[around], series.log_time[around])
 
@@ -98,7 +98,7 @@ def _what(jump: Jump) -> str:
 
 
 def beside(series: Series, other: Series) -> Series:
-    """Of the parts of `series` between jumps, the one that lies beside `other` in stamps and recorded times."""
+    """The part of `series` between jumps that overlaps `other` most in stamps and recorded times."""
     found = jumps(series.stamp, series.log_time)
     if not found:
         return series
@@ -106,15 +106,15 @@ def beside(series: Series, other: Series) -> Series:
 
 
 def _overlap(part: Series, other: Series) -> int:
-    """Nanoseconds that both cover, by the clock that says less."""
+    """Overlap of both series [ns]: the smaller of those by the two clocks."""
     clocks = ((part.stamp, other.stamp), (part.log_time, other.log_time))
     return min(int(min(a[-1], b[-1])) - int(max(a[0], b[0])) for a, b in clocks)
 
 
 def after_turns(log_time: Integers, turns: int, since: int) -> tuple[Integers, Integers]:
-    """Places and times [ns] of commands, of those recorded at `log_time` (m,), once that was set back `turns` times.
+    """Indices and times [ns] of the commands in `log_time` (m,) [ns] after its clock was set back `turns` times.
 
-    The last one before is still in force then: it is taken along, at the time `since`.
+    The last command before is still in force: it is included, at the time `since` [ns].
     """
     bounds = [0, *set_back(log_time).tolist(), len(log_time)]
     first, last = (bounds[turns], bounds[turns + 1]) if turns + 1 < len(bounds) else (len(log_time), len(log_time))

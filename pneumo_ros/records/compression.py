@@ -8,15 +8,15 @@ import zstandard
 from pneumo_ros.errors import DataError, brief
 
 _PIECE = 1024  # bytes fed at a time when the whole does not decompress
-_ALWAYS, _RATIO = 1 << 26, 200  # bytes; times the compressed size: messages of an axis are not packed as tightly
-_LZ4 = 255  # to one, which lz4 cannot exceed
+_ALWAYS, _RATIO = 1 << 26, 200  # largest content: bytes; times the compressed size
+_LZ4 = 255  # highest compression ratio of lz4
 
 
 def decompress(content: memoryview, compression: str, size: int, path: Path) -> bytes:
     """Decompressed `content`, of `size` bytes when it is whole; else the part before the damage.
 
-    Of what is packed more tightly than any recording, and would fill the memory, only the beginning. Raises DataError
-    when the compression is neither none, zstd nor lz4.
+    Content that is packed more tightly than any recording, and would fill the memory, is cut. Raises DataError when
+    the compression is not none, zstd or lz4.
     """
     if not compression:
         return bytes(content)
@@ -33,9 +33,9 @@ def decompress(content: memoryview, compression: str, size: int, path: Path) -> 
 
 
 def _announced(content: memoryview, compression: str) -> int:
-    """How many bytes the content says it becomes; as many as it can become where it does not say."""
+    """Decompressed size [bytes] that the content states; the largest possible one where it states none."""
     if compression == "zstd":
-        return int(zstandard.frame_content_size(content))  # -1 when it does not say: no more than `size` then
+        return int(zstandard.frame_content_size(content))  # -1 when it states none: `size` decides then
     return int(lz4.frame.get_frame_info(content)["content_size"]) or _LZ4 * len(content)
 
 
@@ -53,5 +53,5 @@ def _readable_part(content: memoryview, compression: str, most: int) -> bytes:
             if most < 0:
                 break
     except (zstandard.ZstdError, RuntimeError, EOFError):
-        pass  # this is the damage: what came before it is what there is
+        pass  # the damage: the parts before it are returned
     return b"".join(parts)

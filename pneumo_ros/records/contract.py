@@ -1,11 +1,11 @@
-"""Topics every recording, node and tool agrees on: names relative to the namespace of the axis, and their types."""
+"""Topics that all recordings, nodes and tools share: names relative to the namespace of the axis, and their types."""
 
 JOINT_STATES = "joint_states"
 PRESSURE_A = "chamber_a/pressure"
 PRESSURE_B = "chamber_b/pressure"
 SUPPLY_PRESSURE = "supply/pressure"
 COMMAND = "valve/command"
-SETPOINT = "setpoint"  # what the controller wants right now, for plots
+SETPOINT = "setpoint"  # the controller's present setpoint, for plots
 DESCRIPTION = "description"
 
 TYPES = {
@@ -25,14 +25,14 @@ GLOBAL_TYPES = {
     "/clock": "rosgraph_msgs/msg/Clock",
 }
 LATCHED = frozenset({DESCRIPTION})  # published transient local
-JOINT = "piston"  # unless said otherwise
+JOINT = "piston"  # the default name
 
-# What a recording of the axis is made of; the rest is for whoever drives it.
+# The topics of a recording of the axis; the others belong to its control.
 SIGNALS = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE, COMMAND, DESCRIPTION)
 
 
 def split(topic: str) -> tuple[str, str] | None:
-    """Namespace and contract name of a recorded topic; None for one the contract does not know.
+    """Namespace and contract name of a recorded topic; None for an unknown topic.
 
     The namespace has no slashes at its ends, and is "" for the root.
     """

@@ -1,4 +1,4 @@
-"""Recordings that do not keep to the contract, read as what they are: other units, gauge pressures, swapped topics."""
+"""Corrections of recordings that break the contract: other units, gauge pressures, swapped topics."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +14,7 @@ WORDS = (*PRESSURE_UNITS, *OTHERS[:1], *LENGTH_UNITS, *OTHERS[1:])
 
 
 def parse_words(text: str) -> tuple[str, ...]:
-    """The words of `--read-as WORD,WORD`. Raises UsageError for one that is unknown, and for two units of pressure."""
+    """The words of `--read-as WORD,WORD`. Raises UsageError for an unknown word, and for two units of pressure."""
     spelling = {word.lower(): word for word in WORDS}
     given = [word.strip() for word in text.split(",") if word.strip()]
     if wrong := [word for word in given if word.lower() not in spelling]:
@@ -26,7 +26,7 @@ def parse_words(text: str) -> tuple[str, ...]:
 
 
 def corrected(recording: Recording, words: Sequence[str], atmospheric_pressure: float) -> Recording:
-    """`recording` in SI units and with absolute pressures, when `words` (of WORDS) say what it holds.
+    """`recording` in SI units and with absolute pressures, when `words` (of WORDS) say how it was recorded.
 
     `atmospheric_pressure` [Pa] is added to gauge pressures.
     """

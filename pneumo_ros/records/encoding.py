@@ -1,4 +1,4 @@
-"""Arrays as serialized messages: one message is serialized by rosbags, the others take over its layout."""
+"""Arrays as serialized messages: one message is serialized by rosbags, the others copy its layout."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Folders that hold recordings, and folders that are one."""
+"""The recordings in a folder."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ _FILES = (".mcap", ".db3")
 
 
 def recordings_in(folder: Path) -> list[Path]:
-    """The recordings in a folder that is no recording itself, by name; none where it is one, or no folder."""
+    """The recordings in `folder`, by name; none if it is itself a recording, or no folder."""
     if not folder.is_dir() or (folder / "metadata.yaml").exists():
         return []
     entries = sorted(folder.iterdir())

@@ -1,4 +1,4 @@
-"""Storage that is left to rosbags: sqlite3, and folders whose files or messages are compressed one by one."""
+"""Storage formats read by rosbags: sqlite3, and folders whose files or messages are compressed one by one."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -21,7 +21,7 @@ _FORMATS = {
 
 
 class ForeignBag:
-    """Reads a folder or a `.db3` file through rosbags; the same face as `McapFile`."""
+    """Reads a folder or a `.db3` file through rosbags; the same interface as `McapFile`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -38,7 +38,7 @@ class ForeignBag:
                     yield self._block(batch)
         except DataError:
             raise
-        except Exception as error:  # rosbags lets through what the database's own library raises
+        except Exception as error:  # rosbags passes on the exceptions of the database library
             raise DataError(f"Cannot read {self.path}: {error}") from error
 
     def _block(self, batch: list[tuple[Connection, int, bytes]]) -> Block:

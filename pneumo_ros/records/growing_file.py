@@ -1,4 +1,4 @@
-"""An MCAP file that is valid whenever it is looked at, also after its writer was killed."""
+"""An MCAP file that is valid at any time, also after its writer was killed."""
 
 import os
 from contextlib import suppress
@@ -20,10 +20,10 @@ def _end() -> bytes:
 
 
 class GrowingFile:
-    """Output stream of an `mcap.writer.Writer`: each flush puts what is new, and a new end, over the old end.
+    """Output stream of an `mcap.writer.Writer`: each flush replaces the old end by the new data and a new end.
 
-    That is one write to the system, which a killed process either has done or has not. Readers that insist on an end,
-    rosbags among them, read such a file at any time.
+    That is one system write, which a killed process has either done or not. Readers that require an end, such as
+    rosbags, can read the file at any time.
     """
 
     END = _end()
@@ -32,7 +32,7 @@ class GrowingFile:
         """Create the file. Raises OSError, also when it exists."""
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
         self._new = bytearray()
-        self._settled = 0  # bytes of the file that stay as they are
+        self._settled = 0  # bytes of the file that are final
 
     def write(self, data: bytes) -> int:
         """Keep `data` for the next flush."""
@@ -44,7 +44,7 @@ class GrowingFile:
         return self._settled + len(self._new)
 
     def flush(self) -> None:
-        """Bring what is new to the file. Raises OSError when the disk is full; the file is then as it was before."""
+        """Write the new data to the file. Raises OSError when the disk is full; the file is then as it was before."""
         try:
             _write_at(self._descriptor, self._new + self.END, self._settled)
         except OSError:
@@ -54,7 +54,7 @@ class GrowingFile:
         self._new.clear()
 
     def close(self) -> None:
-        """Bring the rest, which has an end of its own, to the disk. Raises OSError as `flush` does."""
+        """Write the remaining data, which includes its own end, to the disk. Raises OSError as `flush` does."""
         try:
             _write_at(self._descriptor, self._new, self._settled)
             os.fsync(self._descriptor)
@@ -65,14 +65,14 @@ class GrowingFile:
             os.close(self._descriptor)
 
     def _restore(self) -> None:
-        """Put the end back where it was: that room on the disk is taken already."""
-        with suppress(OSError):  # a disk that fails in another way: the first failure is the one reported
+        """Write the end again where it was: its disk space is already allocated."""
+        with suppress(OSError):  # if this fails too, the first failure is reported
             _write_at(self._descriptor, bytearray(self.END), self._settled)
             os.ftruncate(self._descriptor, self._settled + len(self.END))
 
 
 def _write_at(descriptor: int, data: bytearray, position: int) -> None:
-    """Write all of `data`: the system may take less at a time."""
+    """Write all of `data`: the system may write less per call."""
     done = 0
     while done < len(data):
         done += os.pwrite(descriptor, data[done:], position + done)

@@ -1,4 +1,4 @@
-"""The one joint of `joint_states` that is the piston."""
+"""The joint of `joint_states` that is the piston."""
 
 from typing import Any
 
@@ -17,14 +17,14 @@ FIELDS = ("position", "velocity", "effort")
 
 
 def joint_series(data: TopicData, joint_name: str | None) -> tuple[str, Series]:
-    """Name of the joint, and its position, velocity and effort: NaN where a message does not give one.
+    """Name of the joint, and its position, velocity and effort: NaN where a message lacks one.
 
-    Without `joint_name` it is the only joint, or the one called "piston". Raises DataError when that does not decide.
+    Without `joint_name` it is the only joint, or the one called "piston". Raises DataError when there is no such joint.
     """
     names = data["name"].tolist()
     kinds = set(names)
     joint = _choose(data.name, sorted({name for kind in kinds for name in kind}), joint_name)
-    # A publisher may leave out the names of a single joint; in a message of other joints there is nothing to take.
+    # A publisher may leave out the name of a single joint; a message of other joints has no value of this one.
     places = {kind: kind.index(joint) if joint in kind else -1 if kind else 0 for kind in kinds}
     if len(kinds) == 1:
         place = np.full(len(names), places[names[0]])

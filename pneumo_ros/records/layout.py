@@ -1,4 +1,4 @@
-"""Where the fields lie in a serialized message, learnt from one, so that many are decoded at once.
+"""Layout of a serialized message, learnt from one message, so that many are decoded at once.
 
 Two messages share a layout when they have the same length and agree in every byte that is neither a number nor padding:
 lengths of sequences, lengths and characters of strings. The numbers are then columns of a numpy structured array.
@@ -29,13 +29,13 @@ class Leaf(NamedTuple):
     """One field of a message type, nested names joined by dots."""
 
     path: str
-    base: str  # a key of NUMBERS, "string", or "message" for arrays of messages and what else is not bulk decodable
+    base: str  # a key of NUMBERS, "string", or "message" for everything that cannot be decoded in bulk
     size: int | None  # elements of a fixed array; None for a single value
     sequence: bool
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of one value; of a sequence, that of an empty one."""
+        """Shape of one value; for a sequence, the shape of an empty one."""
         return (0,) if self.sequence else () if self.size is None else (self.size,)
 
     @property
@@ -53,7 +53,7 @@ def leaves(store: Typestore, message_type: str, prefix: str = "") -> list[Leaf]:
         raise DataError(f"A message definition uses the type {message_type} and does not define it.")
     found: list[Leaf] = []
     definition: list[tuple[str, tuple[Nodetype, Any]]] = store.fielddefs[message_type][1]  # type: ignore[assignment]
-    for name, (node, content) in definition:  # rosbags' type of a definition is too wide to be followed
+    for name, (node, content) in definition:  # rosbags' type of a definition is too general to check
         if node == Nodetype.NAME:
             found += leaves(store, content, f"{prefix}{name}.")
         elif node == Nodetype.BASE:
@@ -76,7 +76,7 @@ class Layout:
     def __init__(self, payload: bytes, fields: list[Leaf]) -> None:
         """Learn from one message; `fields` hold no arrays of messages. Raises ValueError when it does not fit them.
 
-        Stray bytes at its end, which ROS's own serialisation may leave, do not matter.
+        Extra bytes at its end, which ROS's own serialisation may leave, are ignored.
         """
         self.length = len(payload)
         self.texts: dict[str, Any] = {}
@@ -124,7 +124,7 @@ class Layout:
         if count is None:
             self.texts[field.path] = self._string()
         else:
-            self._check(5 * count)  # the least a string takes: a damaged count must not make a long loop
+            self._check(5 * count)  # a string takes at least 5 bytes: a damaged count must not make a long loop
             self.texts[field.path] = tuple(self._string() for _ in range(count))
         return []
 
@@ -159,14 +159,14 @@ class Layout:
 
 
 def _byte_order(payload: bytes) -> str:
-    """Of the numbers, from the encapsulation: plain CDR, big or little endian."""
+    """Byte order of the numbers, from the encapsulation: plain CDR, big or little endian."""
     if len(payload) < ENCAPSULATION or payload[0] or payload[1] > 1:
         raise ValueError("not plain CDR")
     return "<" if payload[1] else ">"
 
 
 def _words(fixed: bytearray, payload: bytes) -> list[tuple[int, int, int]]:
-    """Offset, size and value of the words that cover the fixed bytes: a few compares for a message, not one a byte."""
+    """Offset, size and value of words that cover the fixed bytes: a few comparisons per message, not one per byte."""
     words: list[tuple[int, int, int]] = []
     offset = 0
     while offset < len(fixed):

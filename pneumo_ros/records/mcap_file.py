@@ -1,7 +1,7 @@
-"""One MCAP file as blocks of messages, as far as it can be read: a recorder may have been killed while it wrote.
+"""One MCAP file as blocks of messages, as far as it can be read: a recorder may have been killed while writing.
 
-Format: https://mcap.dev/spec. The records are walked here and not by `mcap.reader`, which needs a whole file, nor by
-`mcap.stream_reader`, which makes an object of every message.
+Format: https://mcap.dev/spec. The records are parsed here: `mcap.reader` needs a complete file, and
+`mcap.stream_reader` makes an object of every message.
 """
 
 import struct
@@ -31,7 +31,7 @@ _LEAST = _MESSAGE.itemsize - _PREFIX.size  # length of a message record without 
 
 
 class McapFile:
-    """Reads one MCAP file once, from front to back; `channels` and `warnings` fill while `blocks` is consumed."""
+    """Reads one MCAP file once, from front to back; `channels` and `warnings` are filled while `blocks` is consumed."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -42,7 +42,7 @@ class McapFile:
 
     @property
     def channels(self) -> dict[int, Channel]:
-        """Channels found so far, by the number that messages name them by."""
+        """Channels found so far, by their number in messages."""
         return self._registry.channels
 
     def blocks(self) -> Iterator[Block]:
@@ -77,7 +77,7 @@ class McapFile:
             yield opcode, start, position
 
     def _report(self, closed: bool, read: int) -> None:
-        """Say in words what could not be read."""
+        """Add warnings about the parts that could not be read."""
         if not closed:
             self.warnings.append(
                 f"{self.path.name} breaks off after {read} bytes without its end record: its recorder was killed "
@@ -90,7 +90,7 @@ class McapFile:
             )
         if damaged := self._damaged + self._registry.unreadable:
             parts = "1 part is" if damaged == 1 else f"{damaged} parts are"
-            self.warnings.append(f"{self.path.name}: {parts} damaged; only what is intact there is read.")
+            self.warnings.append(f"{self.path.name}: {parts} damaged; only their intact messages are read.")
 
     def _chunk(self, start: int, stop: int) -> Iterator[Block]:
         """The messages of the chunk record whose body is at `start`; `stop` is where the record or the file ends."""
@@ -108,12 +108,12 @@ class McapFile:
         whole = len(data) == size
         if content + packed <= stop and not (whole and (not checksum or zlib.crc32(data) == checksum)):
             self._damaged += 1
-            if whole:  # something in it is wrong, and no more is known
+            if whole:  # the place of the damage is unknown
                 return
         yield self._block(data, self._walk(data))
 
     def _walk(self, data: bytes) -> Integers:
-        """Positions of the whole message records of a chunk; its other records are taken note of."""
+        """Positions of the complete message records of a chunk; its other records go to the registry."""
         positions: list[int] = []
         found, length_at = positions.append, _LENGTH.unpack_from
         position, last = 0, len(data) - _PREFIX.size
@@ -132,9 +132,9 @@ class McapFile:
 
     def _block(self, data: Buffer, positions: Integers) -> Block:
         """Block of the message records at `positions`."""
-        positions = positions[positions + _MESSAGE.itemsize <= len(data)]  # a damaged length may say anything
+        positions = positions[positions + _MESSAGE.itemsize <= len(data)]  # a damaged length may have any value
         heads = gather(data, positions, _MESSAGE.itemsize).view(_MESSAGE)
-        # Without its channel record, lost with a damaged chunk, nobody knows what a message is.
+        # A message whose channel record was lost with a damaged chunk cannot be decoded.
         known = np.isin(heads["channel"], np.fromiter(self.channels, dtype=np.uint16)) & (heads["length"] >= _LEAST)
         if not known.all():
             positions, heads = positions[known], heads[known]
@@ -149,7 +149,7 @@ class McapFile:
 
 
 def _open(path: Path) -> mmap:
-    """The file in memory, after a look at its first bytes."""
+    """The file mapped into memory, after a check of its first bytes."""
     try:
         with path.open("rb") as stream:
             magic = stream.read(len(MAGIC))

@@ -1,4 +1,4 @@
-"""What the records of an MCAP file say about its messages: channels with their schemas, and how it was written."""
+"""Channels and schemas of an MCAP file, and whether its recorder could close it."""
 
 import struct
 from functools import lru_cache
@@ -13,21 +13,21 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.records.block import Channel
 from pneumo_ros.yaml_text import load_yaml
 
-LIBRARY = "pneumo_ros"  # how files written here name their writer
+LIBRARY = "pneumo_ros"  # name of the writer in files written here
 
 
 class Registry:
-    """Fills with every record that `take` is given."""
+    """Collects the records that `take` receives."""
 
     def __init__(self) -> None:
         self.channels: dict[int, Channel] = {}
-        self.unfinished = False  # written here, by a recorder that was killed: the file is valid but has no summary
+        self.unfinished = False  # written here by a recorder that was killed: valid, but without summary
         self.unreadable = 0  # records
         self._schemas: dict[int, records.Schema] = {}
         self._library = ""
 
     def take(self, opcode: int, body: bytes) -> None:
-        """Take note of a record; kinds that say nothing about messages are passed over."""
+        """Evaluate a record; kinds that do not concern messages are skipped."""
         stream = ReadDataStream(BytesIO(body))
         try:
             if opcode == Opcode.SCHEMA:
@@ -45,7 +45,7 @@ class Registry:
             self.unreadable += 1
 
     def _describe(self, channel: records.Channel) -> Channel:
-        """The channel with the words of its schema."""
+        """The channel with the text of its schema."""
         schema = self._schemas.get(channel.schema_id, records.Schema(0, b"", "", ""))
         return Channel(
             channel.topic,

@@ -1,4 +1,4 @@
-"""Message definitions: those a recording carries, and the standard ones for what is written.
+"""Message definitions: those in a recording, and the standard ones for writing.
 
 The definitions, their text form and the RIHS01 hash come from rosbags.
 """
@@ -17,7 +17,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.records.block import Channel
 
 ENCAPSULATION = 4  # bytes before a message that give its byte order
-MOST_VALUES = 10_000  # of a message; more are nested so that a short definition fills any memory
+MOST_VALUES = 10_000  # of a message; nested definitions with more could fill the memory
 _IDL_PART = "=" * 80 + "\nIDL: "
 
 
@@ -29,7 +29,7 @@ def standard_types() -> Typestore:
 
 @lru_cache(maxsize=256)
 def types_of(message_type: str, definition_format: str, definition: str) -> Typestore:
-    """Types by which a recording's messages of `message_type` are read: its own definition, else the standard one.
+    """Types for reading a recording's messages of `message_type`: its own definition, else the standard one.
 
     Raises DataError when there is no definition or it cannot be understood.
     """
@@ -50,7 +50,7 @@ def types_of(message_type: str, definition_format: str, definition: str) -> Type
             raise DataError(f"{message_type} is defined in the format '{definition_format}'; ros2msg and ros2idl work.")
     except DataError:
         raise
-    except Exception as error:  # rosbags runs what it has made of the definition, and that can fail in any way
+    except Exception as error:  # rosbags runs code made from the definition, which can fail in any way
         reason = " ".join(str(error).split())[:200]
         raise DataError(f"The recording's definition of {message_type[:200]} cannot be understood: {reason}") from error
     _values(store, message_type, ())
@@ -58,16 +58,16 @@ def types_of(message_type: str, definition_format: str, definition: str) -> Type
 
 
 def _values(store: Typestore, message_type: str, around: tuple[str, ...]) -> int:
-    """How many values a message has at most, a sequence counted once.
+    """Largest number of values in a message; a sequence counts once.
 
-    Raises DataError beyond MOST_VALUES, or for a type that holds itself: what is made of it would never end.
+    Raises DataError beyond MOST_VALUES, or for a type that contains itself: it would never end.
     """
     if message_type in around:
         raise DataError(f"The recording's definition of {around[0]} holds {message_type} within itself.")
     total = 0
     definition: Any = store.fielddefs.get(message_type, ((), ()))[
         1
-    ]  # rosbags' own type of it is too wide to be followed
+    ]  # rosbags' own type of it is too general to check
     for _, (node, content) in definition:
         several = node in (Nodetype.ARRAY, Nodetype.SEQUENCE)
         inner, times = content if several else ((node, content), 1)
@@ -84,14 +84,14 @@ def _values(store: Typestore, message_type: str, around: tuple[str, ...]) -> int
 
 
 def channel_types(channel: Channel) -> Typestore:
-    """Types by which the messages of `channel` are read. Raises DataError when they cannot be."""
+    """Types for reading the messages of `channel`. Raises DataError when they cannot be read."""
     if channel.encoding != "cdr":
         raise DataError(f"{channel.topic} is encoded as '{channel.encoding}'; only 'cdr', as ROS 2 writes it, is read.")
     return types_of(channel.type, channel.definition_format, channel.definition)
 
 
 def definition_of(message_type: str, given: str = "") -> tuple[str, str]:
-    """Text (ros2msg) and RIHS01 hash of a type, as a recording carries them; the hash is "" where rosbags has none.
+    """Text (ros2msg) and RIHS01 hash of a type, as in a recording; the hash is "" where rosbags has none.
 
     The text is that of the standard type, with its constants, unless `given` defines other fields. Raises UsageError
     for a type that is neither given nor standard.
@@ -134,7 +134,7 @@ def deserialize(store: Typestore, payload: bytes, message_type: str) -> Any:
 
 
 def trimmed(payload: bytes, message_type: str) -> bytes:
-    """A standard type's message without what follows it: ROS's own serialisation may leave stray bytes at the end."""
+    """A standard type's message without the extra bytes that ROS's own serialisation may leave at its end."""
     return payload[: _decoded(standard_types(), payload, message_type)[1]]
 
 
@@ -144,7 +144,7 @@ def _decoded(store: Typestore, payload: bytes, message_type: str) -> tuple[Any, 
         raise DataError(f"A message of type {message_type} is not plain CDR.")
     try:
         kind = store.get_msgdef(message_type)
-        # Not `store.deserialize_cdr`, which refuses the stray bytes.
+        # Not `store.deserialize_cdr`, which refuses the extra bytes.
         decode = kind.deserialize_cdr_le if payload[1] else kind.deserialize_cdr_be
         message, size = decode(memoryview(payload)[ENCAPSULATION:], 0, kind.cls, store)
     except (SerdeError, KeyError, ValueError, struct.error) as error:

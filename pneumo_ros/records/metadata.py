@@ -10,7 +10,7 @@ from pneumo_ros.records.source import METADATA, ROOT
 
 VERSION = 9
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
-_NEVER = 2**63 - 1  # where a recording without messages starts
+_NEVER = 2**63 - 1  # start of a recording without messages
 
 
 class BagTopic(NamedTuple):
@@ -20,7 +20,7 @@ class BagTopic(NamedTuple):
     type: str
     latched: bool = False  # transient local
     reliable: bool = True
-    definition: str = ""  # of the type, as a .msg file says it; "" for that of the standard type
+    definition: str = ""  # of the type, as in a .msg file; "" for the standard type
 
     def profiles(self) -> list[dict[str, Any]]:
         """The offered quality of service in rosbag2's words; `ros2 bag play` publishes with it."""
@@ -40,7 +40,7 @@ class BagTopic(NamedTuple):
 
 
 class Contents(NamedTuple):
-    """What a folder holds at some moment; times in ns, None without messages."""
+    """Contents of a folder at one moment; times in ns, None without messages."""
 
     file: str
     topics: list[tuple[BagTopic, str, int]]  # topic, RIHS01 hash of its type, messages

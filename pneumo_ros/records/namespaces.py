@@ -1,4 +1,4 @@
-"""Which axis of a recording is meant: the namespace its topics share."""
+"""The axis to read from a recording: the namespace that its topics share."""
 
 from pathlib import Path
 
@@ -35,7 +35,7 @@ def choose_namespace(path: Path, types: dict[str, str], wanted: str | None) -> s
 
 
 def check_types(types: dict[str, str], namespace: str) -> None:
-    """Raises DataError when a topic of the axis has another type than the contract says."""
+    """Raises DataError when a topic of the axis has another type than in the contract."""
     for topic, found in types.items():
         namespace_and_name = contract.split(topic)
         if namespace_and_name and namespace_and_name[0] == namespace:
@@ -54,7 +54,7 @@ def _axes(types: dict[str, str]) -> dict[str, set[str]]:
 
 
 def _shown(namespace: str) -> str:
-    """A namespace as one types it."""
+    """A namespace as a user types it."""
     return f"/{namespace}"
 
 

@@ -17,7 +17,7 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
     """The recording at `path`: a rosbag2 folder, one whose recorder was killed, or a bare `.mcap` or `.db3` file.
 
     `namespace` and `joint_name` choose among several axes in one recording. Raises DataError when the recording cannot
-    be read, lacks a required signal, or leaves that choice open.
+    be read, lacks a required signal, or needs one of them.
     """
     signals = Signals(Path(path), namespace, joint_name)
     commands = signals.commands()
@@ -93,7 +93,7 @@ def _cut(signals: Signals, pressures: list[Series], commands: Series | None) -> 
 
 
 def _apart(signals: Signals, others: list[Series]) -> str:
-    """Sentence for topics that do not overlap in time: when each was stamped."""
+    """Sentence for topics that do not overlap in time, with the time span of each."""
     origin = int(signals.joints.stamp[0])
     spans = [
         f"{one.topic} {seconds(one.stamp[[0]], origin)[0]:.3f} to {seconds(one.stamp[[-1]], origin)[0]:.3f} s"
@@ -106,7 +106,7 @@ def _apart(signals: Signals, others: list[Series]) -> str:
 
 
 def _optional(signals: Signals, joints: Series, name: str) -> Array | None:
-    """A value the recording may have; None, with a warning, when only some of its samples are finite."""
+    """An optional value of the recording; None, with a warning, when only some of its samples are finite."""
     values = joints.values[name]
     good = np.isfinite(values)
     if good.all():

@@ -10,7 +10,7 @@ from pneumo_ros.records.block import Integers
 from pneumo_ros.records.recording import Array
 
 Mask = NDArray[np.bool_]
-SAME_CLOCK = (-5_000_000, 100_000_000)  # [ns] recorded time minus stamp that transport alone explains
+SAME_CLOCK = (-5_000_000, 100_000_000)  # [ns] range of recorded time minus stamp on one clock
 COMMAND_LEAD = 0.1  # of a sample time: clocks jitter, so a command may be recorded a little after the sample it acts on
 
 
@@ -33,7 +33,7 @@ class Series:
 
 
 def seconds(stamp: Integers, origin: int) -> Array:
-    """Time [s] from `origin` to each of `stamp` [ns]; the difference fits a float to the nanosecond."""
+    """Time [s] from `origin` to each of `stamp` [ns]; a float holds the difference to the nanosecond."""
     since: Array = (stamp - origin).astype(np.float64) / 1e9
     return since
 
@@ -69,7 +69,7 @@ def increasing(series: Series, warn: Callable[[str], None]) -> Series:
 
 
 def resampled(series: Series, name: str, stamp: Integers) -> Array:
-    """Value `name` at the times `stamp` (n,) [ns]: as it is where stamps agree, linear between, constant beyond."""
+    """Value `name` at the times `stamp` (n,) [ns]: unchanged where stamps agree, linear between, constant outside."""
     if np.array_equal(series.stamp, stamp):
         return series.values[name]
     origin = int(stamp[0])
@@ -101,14 +101,14 @@ def on_clock_of(joint_states: Series, log_time: Integers, warn: Callable[[str], 
     recorded, first = np.unique(joint_states.log_time, return_index=True)
     stamp, origin = joint_states.stamp[first], int(recorded[0])
     passed = np.interp(seconds(log_time, origin), seconds(recorded, origin), seconds(stamp, int(stamp[0])))
-    # Before and after the joint states time goes on at the usual rate.
+    # Before and after the joint states time runs at the usual rate.
     beyond = np.minimum(log_time - recorded[0], 0) + np.maximum(log_time - recorded[-1], 0)
     placed: Integers = stamp[0] + np.rint(passed * 1e9).astype(np.int64) + beyond
     return placed
 
 
 def _apart(series: Series) -> tuple[float, float]:
-    """Least and greatest of recorded time minus stamp [ns] over the parts of a series, each part's at its best."""
+    """Least and greatest delay [ns], recorded time minus stamp, of the parts of a series: 5th percentile of each."""
     parts = np.array_split(series.log_time - series.stamp, max(min(len(series) // 100, 20), 1))
     best = [float(np.percentile(part, 5)) for part in parts]
     return min(best), max(best)

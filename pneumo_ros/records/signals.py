@@ -1,4 +1,4 @@
-"""The signals of one axis in a recording, each as it was recorded but cleaned."""
+"""The signals of one axis in a recording, cleaned but not resampled."""
 
 import json
 from pathlib import Path
@@ -20,10 +20,10 @@ FEWEST = 2  # samples that make a time base
 
 
 class Signals:
-    """Topics of the axis in `namespace`; what was wrong with them is said in `warnings`."""
+    """Topics of the axis in `namespace`; `warnings` lists their faults."""
 
     def __init__(self, path: Path, namespace: str | None, joint_name: str | None) -> None:
-        """Read the recording. Raises DataError when it cannot be read, or does not say where the piston is."""
+        """Read the recording. Raises DataError when it cannot be read, or the axis or the joint is not clear."""
         self.path = path
         bag = Bag(path)
         found, types = collect(bag, _is_signal)
@@ -44,7 +44,7 @@ class Signals:
         return sorted(data.name for data in self._topics.values())
 
     def like(self, name: str) -> list[str]:
-        """Recorded topics of no known name that have the type of the contract's topic `name`."""
+        """Recorded topics with unknown names that have the type of the contract's topic `name`."""
         return sorted(t for t, kind in self._types.items() if kind == contract.TYPES[name] and not contract.split(t))
 
     def pressure(self, name: str) -> Series | None:
@@ -57,7 +57,7 @@ class Signals:
         if not len(series):
             raise DataError(
                 f"{self.path}: none of the {len(data)} pressures of {data.name} is a finite number; its sensor or "
-                "driver gives nothing."
+                "driver sends no values."
             )
         if self._jumped:
             series = clocks.beside(series, self.joints)
@@ -76,11 +76,11 @@ class Signals:
         return series if len(series) else None
 
     def description(self) -> dict[str, Any] | None:
-        """The last description of the plant; None, with a warning, when it is not what it should be."""
+        """The last description of the plant; None, with a warning, when it is not valid."""
         data = self._topics.get(contract.DESCRIPTION)
         content = None if data is None else _json_object(data["data"][-1])
         if data is not None and content is None:
-            self.warn(f"{data.name}: the last one is no JSON object; it is not used.")
+            self.warn(f"{data.name}: the last message is no JSON object; it is not used.")
         return content
 
     def warn(self, sentence: str) -> None:
@@ -101,16 +101,16 @@ class Signals:
         if len(series) < FEWEST:
             raise DataError(
                 f"{self.path}: {data.name} gives {len(series)} finite positions of '{joint}' in {len(data)} messages; "
-                "its sensor or driver gives nothing."
+                "its sensor or driver sends no values."
             )
         return joint, series
 
 
 def _json_object(text: str) -> dict[str, Any] | None:
-    """The object that `text` is in JSON."""
+    """The JSON object in `text`; None if there is none."""
     try:
         content = json.loads(text)
-    except (ValueError, RecursionError):  # a number of ten thousand digits; ten thousand brackets
+    except (ValueError, RecursionError):  # such as a number of 10 000 digits, or 10 000 brackets
         return None
     return content if isinstance(content, dict) else None
 

@@ -1,4 +1,4 @@
-"""Which files make up a recording: a rosbag2 folder, a folder whose recorder was killed, or one file."""
+"""The files of a recording: a rosbag2 folder, a folder whose recorder was killed, or one file."""
 
 import re
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ ROOT = "rosbag2_bagfile_information"
 
 
 class Source(Protocol):
-    """One file or folder that yields blocks, and words about what it could not read."""
+    """One file or folder that yields blocks, and warnings about unreadable parts."""
 
     warnings: list[str]
 
@@ -98,7 +98,7 @@ def _part(path: Path) -> tuple[str, int]:
 
 
 def _absent(path: Path) -> str:
-    """Sentence for a path that does not exist, with its nearest neighbours."""
+    """Sentence for a path that does not exist, with the names nearest to it."""
     if not path.parent.is_dir():
         return f"There is no {path}: the folder {path.parent} does not exist."
     neighbours = [entry.name for entry in path.parent.iterdir() if _looks_recorded(entry)]
@@ -115,12 +115,12 @@ def _no_recording(path: Path) -> str:
 
 
 def _looks_recorded(path: Path) -> bool:
-    """Whether `path` is a recording by the looks of it."""
+    """Whether `path` looks like a recording."""
     if path.is_dir():
         return any(entry.suffix in (".mcap", ".db3") or entry.name == METADATA for entry in path.iterdir())
     return path.suffix in (".mcap", ".db3")
 
 
 def _names(paths: list[Path]) -> str:
-    """File names in a row."""
+    """File names with commas between them."""
     return ", ".join(path.name for path in paths)

@@ -14,7 +14,7 @@ from pneumo_ros.records.block import Channel, Integers
 from pneumo_ros.records.layout import Layout, Leaf, leaves
 from pneumo_ros.records.message_types import channel_types, deserialize
 
-SET_BACK = 100_000_000  # ns that recorded time falls back within a topic only when the recorder's clock was set
+SET_BACK = 100_000_000  # ns: recorded times of a topic fall back by more only if the recorder's clock was set
 
 
 class Part(NamedTuple):
@@ -26,12 +26,12 @@ class Part(NamedTuple):
 
 
 def set_back(log_time: Integers) -> Integers:
-    """Places in recorded times (n,) [ns], in the order of the file, that are more than SET_BACK earlier than before."""
+    """Indices of recorded times (n,) [ns], in the order of the file, that fall back by more than SET_BACK."""
     return np.flatnonzero(np.diff(log_time) < -SET_BACK) + 1
 
 
 class TopicData:
-    """Messages of one topic in the order of recorded time; `data["header.stamp.sec"]` is a column, made when asked for.
+    """Messages of one topic in the order of recorded time; `data["header.stamp.sec"]` is a column, made on request.
 
     Where the recorder's clock was set back, the order is that of the file. A column has shape (n,) for numbers and
     strings, (n, k) for arrays and for sequences that are equally long in all messages; else it holds one object per
@@ -118,7 +118,7 @@ def _join(pieces: list[tuple[Integers, NDArray[Any]]], count: int, leaf: Leaf) -
 
 
 def _order(log_time: Integers) -> Integers | None:
-    """Places in the order of time: recorders write as messages arrive, but several files may overlap a little."""
+    """Indices in the order of time, None if in order: the files of a recording may overlap a little."""
     if np.all(log_time[1:] >= log_time[:-1]):
         return None
     bounds = [0, *set_back(log_time).tolist(), len(log_time)]

@@ -14,7 +14,7 @@ from pneumo_ros.records.layout import Layout, leaves
 from pneumo_ros.records.message_types import channel_types
 from pneumo_ros.records.topic_data import Part, TopicData
 
-MOST_LAYOUTS = 64  # of one topic; beyond, its messages are deserialized one by one
+MOST_LAYOUTS = 64  # of one topic; further messages are deserialized one by one
 
 
 class Collector:
@@ -49,7 +49,7 @@ class Collector:
         return TopicData(self.channel, np.concatenate([none, *self._log_times]), parts, self._odd)
 
     def _sort(self, rows: NDArray[np.void], places: Integers) -> None:
-        """Give `rows`, all of one length, to the layouts they have, learning those that are new."""
+        """Sort `rows`, all of one length, into their layouts; new layouts are learnt."""
         for layout in [one for one in self._layouts if one.length == rows.itemsize]:
             rows, places = self._give(layout, rows, places)
         while len(rows):
@@ -66,7 +66,7 @@ class Collector:
             return None
         try:
             layout = Layout(payload, self._leaves)
-        except ValueError:  # rosbags will say what is wrong with it, if it is asked for
+        except ValueError:  # rosbags reports the fault when the message is used
             return None
         self._layouts[layout] = []
         return layout

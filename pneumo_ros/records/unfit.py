@@ -1,4 +1,4 @@
-"""Recordings that can be read and not be used, as far as they show it without a model."""
+"""Checks for recordings that can be read but not used; they need no model."""
 
 import numpy as np
 
@@ -7,17 +7,17 @@ from pneumo_ros.records.corrections import PRESSURE_UNITS
 from pneumo_ros.records.recording import Array, Recording
 
 _FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
-_VACUUM, _MOST = 1e4, 1e7  # Pa: no chamber of a pneumatic axis is emptier, or fuller
-_USUAL = 5e4  # Pa, which the pressures of a running axis reach, gauge or absolute
+_VACUUM, _MOST = 1e4, 1e7  # Pa: lowest and highest pressure in a chamber of a pneumatic axis
+_USUAL = 5e4  # Pa: the pressures of a running axis reach it, gauge or absolute
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
 # the highest value of a running axis, 0.9 to 13 bar, in each unit; the ranges of the units do not overlap much
 _HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 145.0), ("kPa", 1300.0), ("hPa", _VACUUM))
 
 
 def check_use(recording: Recording, force_driven: bool) -> None:
-    """Raises DataError for a recording that is too short, sampled too slowly, or lacks what drives the axis.
+    """Raises DataError for a recording that is too short, sampled too slowly, or lacks the input of the axis.
 
-    A valve-driven one must hold two chamber pressures, and these must have the size of absolute pressures in Pa.
+    A valve-driven axis needs two chamber pressures, in the range of absolute pressures in Pa.
     """
     _check_time(recording)
     if force_driven and recording.effort is None:
@@ -45,7 +45,7 @@ def _check_time(recording: Recording) -> None:
 
 
 def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Array]) -> None:
-    """Raises DataError unless `pressure` has the size of absolute pressures in Pa; `both` have a say in the advice."""
+    """Raises DataError unless `pressure` is in the range of absolute pressures in Pa; the advice depends on `both`."""
     lowest, highest = float(pressure.min()), float(pressure.max())
     if lowest >= _VACUUM and highest <= _MOST:
         return
@@ -53,7 +53,7 @@ def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Ar
     span = f"{recording.name}: {topic} is {lowest:.4g} to {highest:.4g}"
     wanted = "absolute pressures in Pa are needed"
     if highest > _MOST:
-        raise DataError(f"{span} Pa, more than pneumatics bear; {wanted}: look at the unit, and at --read-as if given")
+        raise DataError(f"{span} Pa, more than a pneumatic axis has; {wanted}: check the unit, and --read-as if given")
     if lowest == highest or (np.mean(pressure < 0.0) > 0.2 and highest < _VACUUM):
         raise DataError(f"{span} in {len(pressure)} samples: its sensor gives no signal; look at its plug and supply")
     if highest < _USUAL:
@@ -62,7 +62,7 @@ def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Ar
     if np.mean(pressure < _VACUUM) < _SEVERAL:
         many = int(np.count_nonzero(pressure < _VACUUM))
         raise DataError(
-            f"{recording.name}: {topic} is {lowest:.4g} Pa at {at:.3f} s, emptier than a chamber can be, in {many} of "
+            f"{recording.name}: {topic} is {lowest:.4g} Pa at {at:.3f} s, lower than a chamber can be, in {many} of "
             f"{len(pressure)} samples: its sensor drops out; look at its plug, and cut these samples out"
         )
     raise DataError(
@@ -73,7 +73,7 @@ def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Ar
 
 
 def _unit(pressures: list[Array]) -> str:
-    """The unit in which the highest pressure is one of a running axis."""
+    """The unit in which the highest pressure is plausible for a running axis."""
     highest = max(float(one.max()) for one in pressures)
     return next((unit for unit, most in _HIGHEST if highest < most), "hPa")
 
@@ -89,7 +89,7 @@ def _gauge(unit: str, both: list[Array]) -> bool:
 
 def _advice(unit: str, both: list[Array]) -> str:
     publish = f"multiply {unit} by {PRESSURE_UNITS[unit]:.6g} where it is published"
-    if any(one.max() >= _VACUUM for one in both):  # one in Pa, the other not: no option says which
+    if any(one.max() >= _VACUUM for one in both):  # only one of them is in Pa: --read-as applies to both
         return publish
     gauge = _gauge(unit, both)
     more = ", and add the atmosphere's 1e5 Pa" if gauge else ""

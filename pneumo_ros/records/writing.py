@@ -41,10 +41,10 @@ def write_recording(
     """Write a new rosbag2 folder, which appears whole or not at all; `read_recording` gives the same arrays back,
     times to the nanosecond.
 
-    `time` (n,) [s] increases and starts anywhere; zero is `start_ns` (now when None) since the epoch. Signals (n,):
+    `time` (n,) [s] increases; its zero is `start_ns` [ns] since the epoch (None: now). Signals (n,):
     position [m], velocity [m/s], effort [N], absolute pressures [Pa] with one variance [Pa2]. The valve command is
     either `voltage` (n,) [V], held from each sample to the next and written when it changes, or `command_time` (m,)
-    [s] with `command` (m,) [V]. Raises UsageError for arrays that do not fit, DataError when `path` exists.
+    [s] with `command` (m,) [V]. Raises UsageError for arrays of other shapes, DataError when `path` exists.
     """
     signals = {
         "position": position, "velocity": velocity, "effort": effort, "pressure_a": pressure_a,

@@ -1,1 +1,1 @@
-"""Runs: recordings on one even grid, with their noise, smoothed signals, cuts, and what sensors do to them."""
+"""Runs: recordings on one even grid, with their noise, smoothed signals, cuts, and corrections for sensor effects."""

@@ -1,1 +1,1 @@
-"""What a diagnosis says: sentences and tables from its JSON; terminal, report and workbench only lay them out."""
+"""A diagnosis in words: sentences and tables from its JSON; terminal, report and workbench only lay them out."""

@@ -110,7 +110,7 @@ def test_units_are_recognised_by_their_numbers(unit: str, gauge: bool, size: flo
 
 
 def test_a_unit_that_is_given_without_need() -> None:
-    with pytest.raises(DataError, match=r"more than pneumatics bear.*--read-as"):
+    with pytest.raises(DataError, match=r"more than a pneumatic axis has.*--read-as"):
         check_use(corrected(axis(), ("bar",), ATMOSPHERE), False)
 
 
