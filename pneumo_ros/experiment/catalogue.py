@@ -1,4 +1,4 @@
-"""The experiments there are, by the name a user types."""
+"""All experiments, by the name that a user types."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from pneumo_ros.plant import Model
 
 @dataclass(frozen=True)
 class Experiment:
-    """What an experiment is good for, and the function that makes its programme for a model and seconds per run."""
+    """Purpose of an experiment, and the function that makes its programme for a model and seconds per run."""
 
     purpose: str
     make: Callable[[Model, float], Programme]
@@ -60,7 +60,7 @@ EXPERIMENTS = {
 def make_programme(name: str, model: Model, voltages: Sequence[float] = (), seconds: float | None = None) -> Programme:
     """The programme of the experiment `name` for `model`; `voltages` [V] are for constant-voltage only.
 
-    Raises UsageError for an unknown experiment, with the nearest names, and for values that make no sense.
+    Raises UsageError for an unknown experiment, with the nearest names, and for invalid values.
     """
     if name not in EXPERIMENTS:
         raise UsageError(unknown_name("experiment", name, EXPERIMENTS))

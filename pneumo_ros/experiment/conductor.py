@@ -1,4 +1,4 @@
-"""Who conducts a programme: measurement in, voltage out, sample by sample; the same on a plant and in a rehearsal."""
+"""Runs a programme sample by sample, measurement in, voltage out; the same on a plant and in a rehearsal."""
 
 import math
 from collections.abc import Callable, Generator
@@ -7,12 +7,12 @@ from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.experiment.trace import Trace
 from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
 
-STILL, WITHIN = 0.3, 3e-4  # s, m: a piston that stays within so much for so long rests
+STILL, WITHIN = 0.3, 3e-4  # s, m: a piston rests if it stays this long within this distance
 CALM = 10.0  # s: longest wait for rest at closed valve
 SLIP = 2e-3  # m: the piston has broken away
-WRONG = 2e-2  # m: the piston goes the wrong way
+WRONG = 2e-2  # m of motion the wrong way that end the experiment
 STUCK = 10.0  # s without SLIP of progress on the way back
-NEAR = 0.05  # of the room: a start this near the limit is near enough
+NEAR = 0.05  # of the room: tolerance of a start position at the limit
 LAST = 1.0  # s over which the final speed is taken
 BRAKE, PRESENT = 0.02, 0.05  # m/s above which the valve brakes; s over which the present speed is taken
 
@@ -20,7 +20,7 @@ Voltages = Generator[float, None, None]
 
 
 class Conductor:
-    """Takes the piston through a programme. `step` says the voltage for each measurement until `done`.
+    """Takes the piston through a programme. `step` returns the voltage for each measurement until `done`.
 
     `recording` is the name of the trial that is to be recorded from this measurement on, None between trials.
     """
@@ -31,14 +31,14 @@ class Conductor:
         self.recording: str | None = None
         self.outcomes: list[TrialResult] = []
         self.done = False
-        self.index = 0  # of the trial that comes next, or is under way
+        self.index = 0  # of the present or next trial
         self.time = self.position = 0.0
         self._inside = False
         self._now, self._late = Trace(PRESENT), Trace(LAST)
         self._voltages = self._all()
 
     def step(self, time: float, position: float) -> float:
-        """Voltage [V] from now, `time` [s, any origin], on, with the piston at `position` [m].
+        """Voltage [V] from `time` [s, any origin] on, with the piston at `position` [m].
 
         Raises AbortedError when the plant must be stopped; after that, and when all is done, the voltage is 0.
         """
@@ -48,9 +48,9 @@ class Conductor:
         return next(self._voltages, 0.0)
 
     def _check(self) -> None:
-        """A plant may be found at the end of its stroke, but must not be driven there."""
+        """The piston may start at the end of its stroke, but must not be driven there."""
         if not math.isfinite(self.position):
-            self._stop(f"the position is {self.position}; look after the sensor")
+            self._stop(f"the position is {self.position}; check the sensor")
         if abs(self.position) < self.programme.end:
             self._inside = True
         elif self._inside:
@@ -61,7 +61,7 @@ class Conductor:
         self._voltages = _nothing()
         raise AbortedError(reason)
 
-    # --- what happens, in its order: each yields voltages -------------------------------------------------------------
+    # --- the steps in their order: each yields voltages ---------------------------------------------------------------
 
     def _all(self) -> Voltages:
         for index, trial in enumerate(self.programme.trials):
@@ -75,9 +75,9 @@ class Conductor:
         self.done = True
 
     def _settle(self) -> Voltages:
-        """Brake, then closed valve until the piston rests.
+        """Brake, then close the valve until the piston rests.
 
-        The air that drives a piston goes on to do so in closed chambers: without braking it coasts for decimetres.
+        Closed chambers keep their pressures: without braking the piston coasts for decimetres.
         """
         direction = 1 if self._now.speed > 0.0 else -1
         while direction * self._now.speed > BRAKE:
@@ -93,7 +93,7 @@ class Conductor:
                 where, since = self.position, self.time
 
     def _way_to_start(self, trial: Trial) -> tuple[int, float] | None:
-        """Direction and target of the way to where the trial can begin; None where it can begin at once."""
+        """Direction and target [m] of the move to the trial's start; None if the trial can start here."""
         low, high, span = self.programme.low, self.programme.high, self.programme.span
         if trial.direction:
             least = min(trial.travel, (1.0 - 2.0 * NEAR) * span) if self.outcomes else (1.0 - 2.0 * NEAR) * span
@@ -106,7 +106,7 @@ class Conductor:
         return (-1, 0.5 * (low + high) + NEAR * span) if offset > 0.0 else (1, 0.5 * (low + high) - NEAR * span)
 
     def _go(self, direction: int, target: float) -> Voltages:
-        """To `target` at a moderate voltage."""
+        """Move to `target` [m] at a moderate voltage."""
         volts = self._moderate(direction)
         start = best = self.position
         since = self.time
@@ -142,7 +142,7 @@ class Conductor:
         self.outcomes.append(TrialResult(trial.name, trial.voltage.text, ended, seconds, way, self._late.speed))
 
     def _push(self, trial: Trial) -> Generator[float, None, str]:
-        """One way, until it is long enough, the time is up, or there is no more room; returns why it ended."""
+        """Move one way until travel, time or room is used up; returns why it ended."""
         opened, start = self.time, self.position
         moved: float | None = None  # when it broke away
         ended: str | None = None
@@ -159,7 +159,7 @@ class Conductor:
         return ended
 
     def _ended(self, trial: Trial, way: float, opened: float, moved: float | None) -> str | None:
-        """Why a trial one way ends now, a key of `trial_result.ENDS`; None while it goes on."""
+        """Why a one-way trial ends now, a key of `trial_result.ENDS`; None while it goes on."""
         if self._room(trial.direction) <= 0.0:
             return "limit"
         if way >= trial.travel:
@@ -169,7 +169,7 @@ class Conductor:
         return "time" if self.time - moved >= trial.seconds else None
 
     def _excite(self, trial: Trial) -> Generator[float, None, str]:
-        """Both ways for a given time; beyond a limit the voltage is turned inwards."""
+        """Move both ways for a given time; beyond a limit the voltage points inwards."""
         opened = self.time
         while self.time - opened < trial.seconds:
             volts = trial.voltage.at(self.time - opened)
@@ -182,7 +182,7 @@ class Conductor:
         return self.programme.return_right if direction > 0 else self.programme.return_left
 
     def _room(self, direction: int) -> float:
-        """Way left to the limit [m]."""
+        """Distance to the limit [m]."""
         return self.programme.high - self.position if direction > 0 else self.position - self.programme.low
 
 

@@ -10,18 +10,18 @@ from pneumo_ros.experiment.room import dead_zone, room_of
 from pneumo_ros.experiment.voltages import Constant
 from pneumo_ros.plant import Model
 
-# V beyond the dead zone. Speed grows steeply there and hardly any more beyond 1 V: most of the steps are small ones.
+# V beyond the dead zone. Speed grows steeply up to 1 V and hardly beyond: most steps are small.
 STEPS = (0.015, 0.025, 0.045, 0.08, 0.15, 0.3, 1.0, 6.2)
 SECONDS = 8.0  # of motion
-PATIENCE = 25.0  # s: so long may the pressures take to break the piston away
+PATIENCE = 25.0  # s: longest time until the pressures break the piston away
 _LONGER, _LEAST = 1.3, 0.15  # times the predicted way; of the room
 
 
 def constant_voltage(model: Model, voltages: Sequence[float] = (), seconds: float = SECONDS) -> Programme:
     """Each voltage [V] both ways, slowest first; default: eight steps beyond the dead zone of `model`.
 
-    `seconds` of motion are wanted of each run; the way it may take is what the model predicts and a third. Raises
-    UsageError for voltages that are not above 0 and at most 10 V, or so near that their names are the same.
+    Each run needs `seconds` of motion; its travel is limited to 1.3 times the prediction. Raises UsageError for
+    voltages that are not above 0 and at most 10 V, or so close that their names are equal.
     """
     for volts in voltages:
         if not 0.0 < volts <= MAX_VOLTAGE:
@@ -44,7 +44,7 @@ def name_of(volts: float) -> str:
 
 
 def _way(model: Model, volts: float, seconds: float, low: float) -> float:
-    """How far [m] the model says the piston goes in `seconds` of motion, from rest near the end it comes from."""
+    """Predicted travel [m] in `seconds` of motion, from rest near the end that the piston comes from."""
     sample, start = 0.01, low if volts > 0.0 else -low
     held = np.full(round((PATIENCE + seconds) / sample), volts)
     y = model.simulate(held, model.state(y=start), sample_time=sample)[:, 0]

@@ -8,7 +8,7 @@ from pneumo_ros.experiment.voltages import Steps, Sweep
 from pneumo_ros.plant import Model
 
 SECONDS = 20.0  # of each run
-MARGIN = 0.2  # of the stroke kept free before either end: fast motion takes room to turn
+MARGIN = 0.2  # of the stroke kept free before either end: fast motion needs room to turn
 
 
 def steps(model: Model, seconds: float = SECONDS, seed: int = 0) -> Programme:
@@ -54,7 +54,7 @@ def _reach(model: Model) -> float:
 
 
 def _levels(model: Model, random: Random, seconds: float) -> tuple[tuple[float, float], ...]:
-    """Levels that last `seconds` together."""
+    """Random levels (seconds, volts) that last `seconds` in total."""
     low, levels, left = _reach(model), [], seconds
     while left > 0.0:
         volts = 0.0 if random.random() < 0.12 else random.choice((-1.0, 1.0)) * (low + random.uniform(0.05, 2.3))

@@ -1,4 +1,4 @@
-"""How well one model imitates what another has recorded: what is left when it is refitted."""
+"""How well one model imitates the record of another: the misfit that remains after a refit."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,15 +14,15 @@ from pneumo_ros.shooting.refit import PRIOR, default_free
 Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]
 
-_ITERATIONS, _ENOUGH, _ALIKE = 6, 0.03, 0.01  # Gauss-Newton steps; share of the cost worth another; cost of nothing
-_ANEW = 2  # steps for which all derivatives are renewed; then only those of the effect, which may be far from linear
-_SHORTER = (1.0, 0.5, 0.2, 0.05)  # steps tried
-_VAGUE, _SHAPE = 100.0, 1.0  # prior deviations of strengths and of other parameters of the effect, in usual sizes
+_ITERATIONS, _ENOUGH, _ALIKE = 6, 0.03, 0.01  # Gauss-Newton steps; least relative gain of one; negligible cost
+_ANEW = 2  # steps that renew all derivatives; later ones only those of the effect, which may be far from linear
+_SHORTER = (1.0, 0.5, 0.2, 0.05)  # step lengths tried
+_VAGUE, _SHAPE = 100.0, 1.0  # prior deviations of the effect's strengths and other parameters, over usual values
 
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Parameters that a refit may move: dotted names, start, prior deviation, steps of differences and bounds."""
+    """Parameters that a refit may move: dotted names, start, prior deviation, finite-difference steps and bounds."""
 
     names: tuple[str, ...]
     start: Array
@@ -30,14 +30,14 @@ class Unknowns:
     step: Array
     low: Array
     high: Array
-    base: int  # how many of them, the first, are not the effect's own
+    base: int  # the first `base` parameters are not the effect's own
 
 
 def unknowns(model: Model, effect: str) -> Unknowns:
-    """What moves when `effect`, one of the model's, is to imitate another: its own parameters as far as they like, the
+    """Free parameters when `effect`, one of the model's, imitates another: its own parameters with wide priors, the
     others of `default_free` within 5 %.
 
-    Strengths begin at what adds nothing, where there is such a value.
+    Strengths start at their neutral value, if they have one.
     """
     own = [name for name in model.parameters if name.startswith(f"{effect}.")]
     base = [name for name in default_free(model) if name not in own]
@@ -61,15 +61,15 @@ def _size(model: Model, name: str) -> float:
 
 
 def _usual(model: Model, names: list[str]) -> float:
-    """The largest usual strength among the parameters of an effect, for those that are usually nothing."""
+    """The largest usual strength of an effect: the scale of parameters that are usually zero."""
     return max((_size(model, name) for name in names if model.specification(name).neutral is not None), default=1.0)
 
 
 def imitate(evidence: Sequence[Whitened], truth: Model, model: Model, free: Unknowns) -> list[float]:
-    """Squared noise deviations that are left, per family of residuals, and last those of the priors.
+    """Remaining misfit in squared noise deviations, per family of residuals and last of the priors.
 
-    `truth` has made the record; its own residuals, which are those of sums over samples, are the mark. Gauss-Newton
-    with bounds; the equations are evaluated again at every step, so that what is left is not a linear guess.
+    `truth` made the record; its own residuals, which come from sums over samples, are subtracted. Gauss-Newton with
+    bounds; the equations are evaluated again at every step, so that the misfit is not a linear estimate.
     """
     marks = _families(evidence, truth)
     mark = np.concatenate(marks)
@@ -116,7 +116,7 @@ def _differentiate(jacobian: Array, phi: Array, r: Array, residual: Residual, fr
 
 
 def _move(phi: Array, r: Array, jacobian: Array, free: Unknowns) -> Array:
-    """The step of least squares within the bounds."""
+    """The least-squares step within the bounds."""
     low, high = (free.low - phi) / free.prior - 1e-12, (free.high - phi) / free.prior + 1e-12
     gradient = jacobian.T @ r + (phi - free.start) / free.prior
     return bounded_minimum(jacobian.T @ jacobian + np.eye(len(phi)), gradient, low, high) * free.prior

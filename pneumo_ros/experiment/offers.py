@@ -1,4 +1,4 @@
-"""What is offered to distinguish effects: experiments, and under which conditions they are recorded."""
+"""Experiments that may distinguish effects, and the conditions of their recording."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from pneumo_ros.experiment.programme import Programme
 from pneumo_ros.experiment.telling import BLOCK_PISTON, VENT
 from pneumo_ros.plant import Model
 
-LOW_SUPPLY = 0.75  # of the supply pressure above the atmosphere's
+LOW_SUPPLY = 0.75  # of the gauge supply pressure
 _BLOCKED = 1e5  # N, friction that holds a blocked piston
 
 
@@ -21,18 +21,18 @@ class Part:
     blocked: bool = False  # the piston cannot move
 
     def machine(self, model: Model) -> Model:
-        """`model` under these conditions, for equations to be judged by."""
+        """`model` under these conditions, for its equations."""
         return model.with_parameters(self.conditions)
 
     def held(self, model: Model) -> Model:
-        """`model` under these conditions, as it is simulated: a blocked piston is one of endless friction."""
+        """`model` under these conditions, for simulation: a blocked piston has very large friction."""
         lugre = ("lugre_friction.static_friction", "lugre_friction.coulomb_friction")
         return self.machine(model).with_parameters(dict.fromkeys(lugre, _BLOCKED) if self.blocked else {})
 
 
 @dataclass(frozen=True)
 class Offer:
-    """An experiment on the menu: what it is, the name to run it by, what to do by hand, and its parts."""
+    """An experiment on the menu: purpose, name to run it by, preparation by hand, and parts."""
 
     name: str
     purpose: str
@@ -42,7 +42,7 @@ class Offer:
 
     @property
     def programme(self) -> Programme:
-        """What is run, with the preparations in it."""
+        """The programme to run, with its preparations."""
         return replace(self.parts[0].programme, prepare=self.prepare)
 
 
@@ -56,7 +56,7 @@ def menu(model: Model) -> list[Offer]:
 
 
 def conditions(programme: Programme, model: Model) -> Part:
-    """A programme with the conditions that its preparations make on `model`."""
+    """A programme with the conditions that its preparations create for `model`."""
     vented = {"air.supply_pressure": model["air.atmospheric_pressure"]} if programme.prepare == VENT else {}
     return Part(programme, vented, blocked=programme.prepare == BLOCK_PISTON and "z" in model.states)
 

@@ -1,4 +1,4 @@
-"""A programme: the trials of an experiment in their order, and what holds for all of them."""
+"""A programme: the trials of an experiment in their order, and their common settings."""
 
 import math
 import re
@@ -12,13 +12,13 @@ MAX_VOLTAGE = 10.0  # V, what valve amplifiers of this kind take
 
 @dataclass(frozen=True)
 class Trial:
-    """One recorded run. A constant voltage moves the piston one way and ends where it may; others last `seconds`."""
+    """One recorded run. A constant voltage moves the piston one way within limits; others last `seconds`."""
 
     name: str  # of its recording
     voltage: Voltage
     seconds: float  # longest motion [s]
     patience: float = 0.0  # longest wait for motion [s], of a constant voltage
-    travel: float = math.inf  # longest way [m], likewise
+    travel: float = math.inf  # longest travel [m], likewise
     anywhere: bool = False  # begins where the piston is, for pistons that cannot move
 
     def __post_init__(self) -> None:
@@ -37,18 +37,18 @@ class Trial:
 
 @dataclass(frozen=True)
 class Programme:
-    """Trials, and the room they have. Positions in m from mid stroke, voltages in V, times in s."""
+    """Trials, and their limits. Positions in m from mid stroke, voltages in V, times in s."""
 
     experiment: str
-    machine: str  # whose numbers it was made with
+    machine: str  # that it was made for
     low: float  # a trial ends, or turns, at these positions
     high: float
-    end: float  # distance from mid stroke that counts as the end stop: reaching it ends everything
+    end: float  # distance from mid stroke that counts as the end stop: reaching it ends the programme
     return_right: float  # voltage, positive, that takes the piston back to the right, and to the left
     return_left: float
     trials: tuple[Trial, ...]
     rest: float = 0.6  # at closed valve before each trial, recorded
-    prepare: str = ""  # what somebody has to do by hand before it
+    prepare: str = ""  # preparation by hand
 
     def __post_init__(self) -> None:
         if not -self.end < self.low < self.high < self.end < math.inf:

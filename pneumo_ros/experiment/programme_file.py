@@ -47,8 +47,9 @@ def _flow(entries: dict[str, Any]) -> str:
 
 
 def read_programme(path: str | Path) -> Programme:
-    """The programme in a YAML file. Raises DataError when it cannot be read, UsageError, naming the place, when it is
-    none.
+    """The programme in a YAML file.
+
+    Raises DataError when it cannot be read, UsageError with the place when it is invalid.
     """
     try:
         document = load_yaml(Path(path).read_text(encoding="utf-8"))
@@ -102,7 +103,7 @@ def _number(given: dict[str, Any], name: str, unit: str) -> float:
         raise UsageError(f"{name} is {brief(value)}; it takes a number [{unit}]")
     try:
         return float(value)
-    except OverflowError as error:  # an integer that is no double
+    except OverflowError as error:  # an integer too large for a double
         raise UsageError(f"{name} is {brief(value)}; it takes a number [{unit}]") from error
 
 

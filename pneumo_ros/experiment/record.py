@@ -1,4 +1,4 @@
-"""What a machine would have recorded in an experiment: simulated, without noise."""
+"""The record of an experiment on a machine: simulated, without noise."""
 
 from dataclasses import dataclass
 
@@ -14,9 +14,9 @@ Mask = NDArray[np.bool_]
 Index = NDArray[np.int64]
 
 INTERVAL = 4e-3  # s between samples; noise is scaled to it
-_DECIDE = 1.2e-2  # s between two decisions of the conductor, whole intervals
-SLIDING = 0.01  # m/s: slower, friction is not a function of velocity
-_STILL, _MOVING, _REST = 1e-3, 5e-3, 0.15  # m/s, m/s, s: before, at, and at rest before a breakaway
+_DECIDE = 1.2e-2  # s between two decisions of the conductor, a multiple of INTERVAL
+SLIDING = 0.01  # m/s: below this, friction is not a function of velocity
+_STILL, _MOVING, _REST = 1e-3, 5e-3, 0.15  # m/s before a breakaway; m/s after it; s of rest before it
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Record:
     """An experiment from its beginning, returns and rests included. Arrays are (n,), `INTERVAL` apart.
 
     frame (n, 4): y, v, p_a, p_b as the sensors show them, v by differences; voltage (n,): held from each sample on;
-    recorded: whether a trial was on; breakaways: samples just before the piston slips, with the direction in `ways`.
+    recorded: whether a trial was running; breakaways: last samples before the piston slips; ways: their directions.
     """
 
     part: Part
@@ -42,12 +42,12 @@ class Record:
 
     @property
     def sliding(self) -> Mask:
-        """Where a trial was on and the piston slid."""
+        """Where a trial was running and the piston slid."""
         return np.asarray(self.recorded & (np.abs(self.frame[:, 1]) > SLIDING))
 
 
 def record(part: Part, truth: Model) -> Record | str:
-    """Run `part` on the machine `truth`; the reason in words where it must not be done."""
+    """Run `part` on the machine `truth`; the reason in words if it must not be run."""
     machine = part.held(truth)
     rehearsal = rehearse(part.programme, machine, sample=_DECIDE)
     if rehearsal.aborted:
@@ -72,7 +72,7 @@ def _held(rehearsal: Rehearsal, time: Array) -> Array:
 
 
 def _breakaways(velocity: Array, recorded: Mask) -> tuple[Index, Array]:
-    """Last samples before motion that follows a rest: there, friction holds about what it can. And which way."""
+    """Last samples before motion after a rest, where friction is near its limit, and the directions of motion."""
     moving, wait = np.flatnonzero(np.abs(velocity) > _MOVING), round(_REST / INTERVAL)
     found = []
     for k in moving[np.diff(moving, prepend=-wait - 1) > wait]:

@@ -9,15 +9,15 @@ from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.stepper import Stepper
 
-SAMPLE = 4e-3  # s; what the conductor decides does not depend on milliseconds
+SAMPLE = 4e-3  # s; the conductor's decisions do not depend on milliseconds
 EVERY = 0.1  # s between two points of the path that is kept
 
 
 @dataclass(frozen=True)
 class Rehearsal:
-    """What a programme does to a model.
+    """The course of a programme on a model.
 
-    outcomes: one per trial; duration [s] and way [m] in all; path: (time, position) every 0.1 s; commands: (time,
+    outcomes: one per trial; duration [s] and way [m] in total; path: (time, position) every 0.1 s; commands: (time,
     voltage) at each change; recorded: (begin, end) of each trial; aborted: why it had to be stopped, empty if it went
     well.
     """

@@ -1,17 +1,17 @@
-"""The room that experiments leave a piston, and the voltages that move it through it."""
+"""The position limits of experiments, and the voltages that move the piston between them."""
 
 from typing import TypedDict
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 
-MARGIN = 0.1  # of the stroke, before either end: a piston whose valve closes, for a stalled computer say, coasts so far
-END = 0.005  # of the stroke, before either end: nobody gets there by coasting
+MARGIN = 0.1  # of the stroke, before either end: a piston coasts this far after its valve closes, as in a fault
+END = 0.005  # of the stroke, before either end: no piston coasts this far
 MODERATE = 0.3  # V beyond the dead zone
 
 
 class Room(TypedDict):
-    """What every programme needs, by the names it has there: positions [m] and voltages [V]."""
+    """Entries of every programme, by their names there: positions [m] and voltages [V]."""
 
     low: float
     high: float

@@ -13,19 +13,19 @@ from pneumo_ros.experiment.record import Record, record
 from pneumo_ros.experiment.whitened import FAMILIES, Noise, Whitened
 from pneumo_ros.plant import Model
 
-CLEAR = 5.0  # noise deviations that distinguish effects, whatever was looked for; fewer than 2 decide nothing
+CLEAR = 5.0  # noise deviations that distinguish effects for certain; fewer than NOTHING decide nothing
 NOTHING = 2.0
-WHERE = (*FAMILIES, "what is known of the other parameters")
+WHERE = (*FAMILIES, "prior knowledge of the other parameters")
 
 Progress = Callable[[float], None]  # called with the share that is done, 0 to 1
 
 
 @dataclass(frozen=True)
 class Separation:
-    """What an experiment would decide.
+    """The expected result of an experiment.
 
-    if_a, if_b: noise deviations left when the one effect has made the record and the other is fitted to it, with the
-    parameters that a refit may move. where: the most informative equation. refused: why it must not be done, else "".
+    if_a, if_b: noise deviations that remain when effect a (b) made the record and the model with the other is
+    refitted to it. where: the most informative equation. refused: why it must not be done, else "".
     """
 
     offer: Offer
@@ -37,12 +37,12 @@ class Separation:
 
     @property
     def separation(self) -> float:
-        """The smaller of both: what is sure whichever effect is there."""
+        """The smaller of both, reached whichever effect is present."""
         return min(self.if_a, self.if_b)
 
     @property
     def log_likelihood_ratio(self) -> float:
-        """Expected: half the square of the separation."""
+        """Expected value: half the square of the separation."""
         return 0.5 * self.separation**2
 
 
@@ -58,8 +58,8 @@ def separate(
 ) -> list[Separation]:
     """Every experiment of `offers` (default: the menu), the most informative first; refused ones last.
 
-    Each effect has its value in `model`, or its parameters' defaults. Raises UsageError for unknown or equal effects,
-    for those that the machine cannot be without or have, and for a machine without valve.
+    Each effect has its parameters from `model`, or their defaults. Raises UsageError for unknown or equal effects, for
+    effects that the machine needs or cannot have, and for a machine without valve.
     """
     models = rivals(model, effect_a, effect_b)
     chosen = menu(model) if offers is None else list(offers)
@@ -74,7 +74,7 @@ def separate(
 
 
 def rivals(model: Model, effect_a: str, effect_b: str) -> tuple[Model, Model]:
-    """The machine with the one effect and without the other, twice; errors as `separate`."""
+    """Two machines, each with one of the effects and without the other; errors as `separate`."""
     if effect_a == effect_b:
         raise UsageError(f"{effect_a} is given twice; it takes two different effects")
     for name in (effect_a, effect_b):
@@ -91,7 +91,7 @@ def rivals(model: Model, effect_a: str, effect_b: str) -> tuple[Model, Model]:
 
 
 def _judge(offer: Offer, models: tuple[Model, Model], effects: tuple[str, str], noise: Noise) -> Separation:
-    """What `offer` decides if the first is true, and if the second is."""
+    """The separation by `offer` if the first model is true, and if the second is."""
     found, duration = [], 0.0
     for k, truth in enumerate(models):
         records = [record(part, truth) for part in offer.parts]

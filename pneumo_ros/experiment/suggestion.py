@@ -6,7 +6,7 @@ from pneumo_ros.experiment.separate import CLEAR, NOTHING, Separation
 
 
 def best(ranked: Sequence[Separation], by_hand: bool = True) -> Separation | None:
-    """The most informative experiment, of all or of those that need no hand; None if none is informative."""
+    """The most informative experiment, of all or of those without preparation by hand; None if none is informative."""
     found = (one for one in ranked if not one.refused and (by_hand or not one.offer.prepare))
     return next((one for one in found if one.separation >= NOTHING), None)
 

@@ -1,4 +1,4 @@
-"""What came of an experiment, as plain data."""
+"""Results of an experiment, as plain data."""
 
 from dataclasses import asdict
 from pathlib import Path

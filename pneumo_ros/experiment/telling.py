@@ -1,4 +1,4 @@
-"""Runs that bring out one thing each: zero, leaks, pauses, reversals, the edge of the dead zone."""
+"""Runs that each show one property: zero, leaks, pauses, reversals, the edge of the dead zone."""
 
 from dataclasses import replace
 
@@ -18,9 +18,9 @@ _HOLD = 20.0  # s at closed valve
 
 
 def vent(model: Model, seconds: float = 20.0) -> Programme:
-    """Both chambers opened to the atmosphere in turn, supply shut off: sensors at a pressure that is known.
+    """Both chambers opened to the atmosphere in turn, supply shut off: sensors at a known pressure.
 
-    Raises UsageError for a model without valve, as all of these do.
+    Raises UsageError for a model without valve, as all functions here do.
     """
     right, left = dead_zone(model)
     levels = tuple((seconds / 4.0, sign) for sign in (right + 3.0, -left - 3.0) * 2)
@@ -41,7 +41,7 @@ def hold(model: Model, seconds: float = 5.0) -> Programme:
 
 
 def full_strokes(model: Model, seconds: float = 20.0) -> Programme:
-    """The whole way both ways, slowly and fast."""
+    """Full strokes both ways, slowly and fast."""
     right, left = dead_zone(model)
     edge = max(right, left)
     chosen = [min(edge + volts, MAX_VOLTAGE) for volts in (0.1, 1.5)]
@@ -49,7 +49,7 @@ def full_strokes(model: Model, seconds: float = 20.0) -> Programme:
 
 
 def pauses(model: Model, seconds: float = 100.0) -> Programme:
-    """Moves to and fro with pauses of 0.1, 1, 10 and 60 s before them, both ways but for the longest."""
+    """Moves to and fro with pauses of 0.1, 1, 10 and 60 s before them, both ways except the longest."""
     right, left = dead_zone(model)
     volts = {1: right + 1.5 * MODERATE, -1: left + 1.5 * MODERATE}
     levels: list[tuple[float, float]] = []

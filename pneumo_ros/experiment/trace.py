@@ -1,4 +1,4 @@
-"""The latest stretch of a motion, and how fast it was."""
+"""The latest part of a motion, and its speed."""
 
 from collections import deque
 

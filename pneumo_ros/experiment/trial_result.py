@@ -1,4 +1,4 @@
-"""What becomes of trials."""
+"""Results of trials."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ ENDS = {
 
 
 class AbortedError(PneumoError):
-    """The plant did what it must not do; the valve is to be closed."""
+    """The plant did something forbidden; the valve must be closed."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,6 @@ class TrialResult:
 
     @property
     def text(self) -> str:
-        """One line for a person."""
+        """One readable line."""
         motion = f"{1e3 * self.speed:+.1f} mm/s at the end, {1e3 * self.travel:.0f} mm"
         return f"{self.name}: {self.voltage}, {motion}, {self.seconds:.1f} s: {ENDS[self.ended]}"

@@ -30,7 +30,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Steps:
-    """One level after the other: pairs of how long [s] and how much [V]."""
+    """One level after the other: pairs of duration [s] and voltage [V]."""
 
     levels: tuple[tuple[float, float], ...]
 
@@ -57,7 +57,7 @@ class Steps:
 class Sweep:
     """A cosine of `amplitude` [V] whose frequency goes linearly from `first` to `last` [Hz] in `seconds`.
 
-    A cosine, so that the piston moves about where it begins.
+    A cosine, so that the piston oscillates about its start.
     """
 
     amplitude: float
@@ -86,7 +86,7 @@ FORMS = "constant: V, steps: [[seconds, V], ...] or sweep: {amplitude: V, first:
 
 
 def as_dict(voltage: Voltage) -> dict[str, Any]:
-    """One entry, from the kind to its numbers, as programme files hold it."""
+    """One entry, kind -> numbers, as in programme files."""
     if isinstance(voltage, Constant):
         return {"constant": voltage.volts}
     if isinstance(voltage, Steps):
@@ -114,7 +114,7 @@ def from_dict(given: dict[str, Any]) -> Voltage:
 def _checked(voltage: Voltage) -> Voltage:
     """ValueError unless all numbers are finite and all durations positive."""
     numbers, lengths = [voltage.largest] if not isinstance(voltage, Steps) else [], [1.0]
-    if isinstance(voltage, Steps):  # the largest of them would hide a NaN
+    if isinstance(voltage, Steps):  # their maximum could hide a NaN
         numbers = [volts for _, volts in voltage.levels]
         lengths = [seconds for seconds, _ in voltage.levels]
     elif isinstance(voltage, Sweep):

@@ -1,7 +1,7 @@
 """How far a model's equations are from a record, in deviations of sensor noise.
 
-Nothing is predicted over long times: every equation is evaluated along the measured motion, and what is left over is
-divided by what noise does to it (generalised least squares; Aitken 1936), in short pieces with a free start each.
+Nothing is predicted over long times: every equation is evaluated along the measured motion. Its residual is divided by
+the effect of noise on it (generalised least squares; Aitken 1936), in short pieces with a free start each.
 
     momentum     M (y_k+1 - 2 y_k + y_k-1) / h^2 - M a_model    while the piston slides, pieces of 0.1 s
     chambers     p_k - p_0 - int p'_model, less its mean         pieces of 0.5 s
@@ -20,7 +20,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 FAMILIES = ("momentum while sliding", "pressure in chamber a", "pressure in chamber b", "force at breakaway")
-NOISE_RATE = 1000.0  # Hz, of the recordings whose noise is given
+NOISE_RATE = 1000.0  # Hz, sample rate for which noise is given
 _STEP = 2e-3  # s, of the integration along the motion
 _SLIDE_SAMPLES, _HOLD_SAMPLES = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
 _TINY = 1e-9  # m/s, velocity of a piston about to slip
@@ -35,13 +35,13 @@ class Noise:
 
     @property
     def scaled(self) -> tuple[float, float]:
-        """The same information, at the samples of a record."""
+        """The same noise density, at the sample interval of a record."""
         share = 1.0 / np.sqrt(NOISE_RATE * INTERVAL)
         return float(self.position * share), float(self.pressure * share)
 
 
 class Whitened:
-    """The whitened residuals of models along one record; all models are whitened alike, as `about` says."""
+    """The whitened residuals of models along one record; all models are whitened by the noise of `about`."""
 
     def __init__(self, record: Record, about: Model, noise: Noise) -> None:
         self.record = record
@@ -56,7 +56,7 @@ class Whitened:
         self._scatter = self._scatter_of_breakaways(machine)
 
     def residuals(self, model: Model) -> list[Array]:
-        """One array per family (`FAMILIES`), in noise deviations; what is not finite is huge."""
+        """One array per family (`FAMILIES`), in noise deviations, within +-1e6; NaN counts as 1e6."""
         with np.errstate(all="ignore"):
             found = self._residuals(self.record.part.machine(model))
         return [np.clip(np.nan_to_num(part, nan=1e6), -1e6, 1e6) for part in found]
@@ -75,9 +75,9 @@ class Whitened:
         return found
 
     def _along(self, model: Model) -> tuple[Array, Array, Array]:
-        """Frame as the model's sensors mean it, states and mean derivatives: (n, 4), (n, states), (n, states).
+        """Frame without the model's sensor effects, states and mean derivatives: (n, 4), (n, states), (n, states).
 
-        What a sensor adds or delays is taken from the signals to first order.
+        Errors and delays of sensors are subtracted from the signals to first order.
         """
         frame = self.record.frame
         states, claimed = self._follow(model, frame)
@@ -95,7 +95,7 @@ class Whitened:
         return model.follow(frame, self.record.voltage[:-1], rest, sample_time=INTERVAL, step=_STEP)
 
     def _breakaways(self, model: Model, states: Array) -> Array:
-        """Net force [N] on the piston at each breakaway, were friction at its limit; 0 if the model is right."""
+        """Net force [N] on the piston at each breakaway, with friction at its limit; 0 if the model is right."""
         at, ways = self.record.breakaways[self._events], self.record.ways[self._events]
         if not len(at):
             return np.zeros(0)
@@ -105,15 +105,15 @@ class Whitened:
         limit[:, v] = _TINY * ways
         beyond = 1e4 * model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
         limit[:, z] = beyond * ways
-        slowed = limit[:, v] - model.derivatives(limit, held, time)[:, z]  # v sigma_0 |z| / g: what g is here and now
+        slowed = limit[:, v] - model.derivatives(limit, held, time)[:, z]  # v sigma_0 |z| / g: gives the present g
         limit[:, z] *= limit[:, v] / slowed
         return np.asarray(self._mass * model.derivatives(limit, held, time)[:, v])
 
     def _whiten_sliding(self, model: Model) -> Array:
         """Inverse roots (pieces, samples, samples) of the covariance that noise gives the force in each piece.
 
-        Noise of the position comes in by its second difference and, times the slope of friction over velocity, by its
-        first; noise of the pressures by the areas.
+        Position noise enters by its second difference and, times the slope of friction over velocity, by its first;
+        pressure noise enters by the piston areas.
         """
         rows, width = _SLIDE_SAMPLES, _SLIDE_SAMPLES + 2
         eye = [np.eye(rows, width, k) for k in range(3)]
@@ -126,7 +126,7 @@ class Whitened:
         return np.linalg.inv(np.linalg.cholesky(covariance))
 
     def _slope(self, model: Model) -> Array:
-        """How much force [N s/m] is lost per velocity along the record (n,)."""
+        """Slope of the force that opposes motion over velocity [N s/m], along the record (n,)."""
         states, _ = self._follow(model, self.record.frame)
         faster = states.copy()
         faster[:, 1] += 1e-3
@@ -142,13 +142,13 @@ class Whitened:
 
 
 def _alters_signals(model: Model) -> bool:
-    """Whether sensors of the model show anything but the states themselves."""
+    """Whether sensors of the model show something else than the states."""
     written = {name for effect in model.composition.effects for f in effect.functions.values() for name in f.writes}
     return not written.isdisjoint(("y_measured", "p_a_measured", "p_b_measured"))
 
 
 def _pieces(wanted: Mask, length: int) -> NDArray[np.int64]:
-    """Indices (pieces, length) of whole pieces, side by side, in which every sample is wanted."""
+    """Indices (pieces, length) of adjacent complete pieces in which every sample is wanted."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(np.int8)))
     begins = [np.arange(a, b - length + 1, length) for a, b in edges.reshape(-1, 2)]
     first = np.concatenate(begins) if begins else np.zeros(0, dtype=np.int64)

@@ -13,17 +13,17 @@ from pneumo_ros.plant import Model, load_model
 from pneumo_ros.reading.read import read_runs
 from pneumo_ros.runs.run import Run
 
-HELD = "hold"  # recordings of such names are not fitted: they judge
+HELD = "hold"  # start of the names of held-out recordings
 NORMAL = 1.96  # deviations of a 95 % interval
 
 
 def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing: bool) -> dict[str, Any]:
-    """What the recordings at `paths` say of their machine, as JSON; `model` and `effects` are files or a shipped name.
+    """Results of the recordings at `paths`, as JSON; `model` and `effects` are files or a shipped name.
 
     parameters: dotted name -> value and 95 % interval. added: effects that held-out recordings support, with those that
-    explain as much. Where there are held-out recordings and `diagnosing`, parameters are those of the model with what
-    was added, for a model that lacks an effect puts it down to its other parameters; else those of an identification,
-    and verdict is null. Raises DataError when no recording can be used, UsageError as `load_model`.
+    explain as much. With held-out recordings and `diagnosing`, parameters are those of the model with the added
+    effects, because a missing effect biases the others; otherwise they come from an identification, and verdict is
+    null. Raises DataError when no recording can be used, UsageError as `load_model`.
     """
     machine = load_model(model, tuple(effects))
     readings = read_runs(paths, machine)
@@ -36,10 +36,10 @@ def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing
 
 
 def _identification(machine: Model, runs: list[Run], held: list[Run]) -> dict[str, Any]:
-    """Parameters from constant voltages, of all recordings."""
+    """Parameters from the constant-voltage runs among all recordings."""
     try:
         known = identify(machine, [*runs, *(run for run in held if run not in runs)])
-    except DataError as error:  # there are none: that is no reason to leave the campaign out
+    except DataError as error:  # no such runs: the campaign is kept
         return {"undetermined": {"all": str(error)}}
     parameters = {}
     for name, one in known.parameters.items():

@@ -1,4 +1,4 @@
-"""Recordings of many machines in a folder: whose they are, and which belong together."""
+"""Recordings in a folder, by machine and campaign."""
 
 import hashlib
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ _FILES = (".mcap", ".db3")
 
 
 class Campaign(NamedTuple):
-    """Recordings of one machine, which count as one state of it; `start` [ns since the epoch] of the first."""
+    """Recordings of one machine in one state; `start` [ns since the epoch] of the first."""
 
     machine: str
     name: str
@@ -25,12 +25,12 @@ class Campaign(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What distinguishes it from all others in the folder."""
+        """Its unique name in the folder."""
         return f"{self.machine}/{self.name}"
 
     @property
     def fingerprint(self) -> str:
-        """Its key and what the recordings were when it was looked at: results of others are not its own."""
+        """Its key and a hash of its files' names, sizes and times: changed files are examined again."""
         digest = hashlib.sha256()
         for path in self.paths:
             for file in sorted(path.iterdir()) if path.is_dir() else (path,):
@@ -46,9 +46,9 @@ class Campaign(NamedTuple):
 
 
 def campaigns(folder: str | Path) -> tuple[list[Campaign], dict[str, str]]:
-    """The campaigns in `folder`, by machine and time, and why recordings are passed over, by path.
+    """The campaigns in `folder`, by machine and time, and by path why recordings are skipped.
 
-    A folder of recordings inside that of a machine is a campaign; recordings right in the folder of a machine are one
+    A folder of recordings inside that of a machine is a campaign; those directly in the folder of a machine are one
     for each day, UTC. Raises UsageError when there is no folder, DataError when it holds no recordings in this layout.
     """
     root = Path(folder)
@@ -81,7 +81,7 @@ def _groups(machine: Path, passed: dict[str, str]) -> Iterator[tuple[str, list[t
 
 
 def _started(folder: Path, passed: dict[str, str]) -> list[tuple[int, Path]]:
-    """The recordings right in `folder`, each with the time of its first message [ns]."""
+    """The recordings directly in `folder`, each with the time of its first message [ns]."""
     found = []
     for path in sorted(folder.iterdir()):
         if path.suffix in _FILES if path.is_file() else path.is_dir() and _is_recording(path):
@@ -102,7 +102,7 @@ def _folders(folder: Path) -> list[Path]:
 
 
 def _is_recording(folder: Path) -> bool:
-    """Whether a folder is one recording; several bare files of different names are as many recordings."""
+    """Whether a folder is one recording; several bare files with different names are separate recordings."""
     if (folder / "metadata.yaml").exists():
         return True
     files = [path.stem.rpartition("_")[0] or path.stem for path in folder.iterdir() if path.suffix in _FILES]

@@ -1,4 +1,4 @@
-"""What changed from campaign to campaign: parameters beyond what their intervals allow, effects that appeared."""
+"""Changes from campaign to campaign: parameters that left their intervals, effects that appeared."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,18 +8,18 @@ from typing import Any
 
 Examined = dict[str, Any]  # machine, campaign, date, and the result of `examine`
 
-ALARM = 0.01  # chance that anything is said to drift in a fleet where nothing does
-MATERIAL = 0.03  # of a value: an untouched machine repeats its friction no better than this (EMPS: 3 %)
-ENOUGH = 8  # changes from campaign to campaign, over the fleet, that show how well machines repeat themselves
+ALARM = 0.01  # probability of any false alarm in a fleet without drift
+MATERIAL = 0.03  # of a value: an unchanged machine repeats its friction no better (EMPS: 3 %)
+ENOUGH = 8  # fewest changes from campaign to campaign, over the fleet, that show the scatter of machines
 _NORMAL, _MAD = 1.96, 1.4826  # deviations: of half a 95 % interval, and of a median of magnitudes
 
 
 def history(campaigns: Sequence[Examined]) -> list[dict[str, Any]]:
-    """A machine each: its parameters over time, what drifted and since when, which effect appeared when.
+    """For each machine: parameters over time, drifts and their start, effects and their first campaign.
 
-    campaigns: in the order of time. A parameter drifted when it left its first interval by more than chance explains,
-    over all that is compared in the fleet (Bonferroni), and by more than MATERIAL of its value, and stayed away. Chance
-    is what the intervals hold and how far, beyond them, the machines of the fleet scatter from campaign to campaign.
+    campaigns: in the order of time. A parameter drifted when it left its first value significantly (Bonferroni over all
+    comparisons in the fleet) and by more than MATERIAL of it, and stayed away. The standard deviation includes the
+    intervals and the scatter of the fleet's machines from campaign to campaign beyond them.
     """
     machines: dict[str, list[Examined]] = {}
     for one in campaigns:
@@ -33,10 +33,10 @@ def history(campaigns: Sequence[Examined]) -> list[dict[str, Any]]:
 
 
 def unrepeated(tracks: Sequence[Sequence[dict[str, Any]]]) -> float:
-    """How far one parameter scatters from campaign to campaign, beyond its intervals: a deviation relative to values.
+    """Scatter of one parameter from campaign to campaign beyond its intervals: a relative standard deviation.
 
-    From the median of all successive changes, which a drift or a jump of some machines leaves alone; 0 where there are
-    fewer than ENOUGH.
+    From the median of all successive changes, which drifts or jumps of some machines do not affect; 0 with fewer than
+    ENOUGH.
     """
     pairs = [pair for points in tracks for pair in pairwise(points)]
     if len(pairs) < ENOUGH:
@@ -75,7 +75,7 @@ def _tracks(ours: Sequence[Examined]) -> dict[str, list[dict[str, Any]]]:
 
 
 def drift(points: Sequence[dict[str, Any]], limit: float, scatter: float = 0.0) -> dict[str, Any] | None:
-    """How a parameter left its first value, and since when; None when it did not, beyond `limit` deviations.
+    """Drift of a parameter from its first value, and its start; None within `limit` deviations.
 
     scatter: from campaign to campaign, relative, beyond intervals; see `unrepeated`.
     """
@@ -105,9 +105,9 @@ def _spread(first: dict[str, Any], point: dict[str, Any], scatter: float = 0.0) 
 
 
 def since(effect: str, ours: Sequence[Examined]) -> dict[str, Any]:
-    """From which campaign on a machine has an effect: in all that were diagnosed, or only in some (`steady` false).
+    """First campaign in which a machine has an effect; `steady` is false if a later diagnosed campaign lacks it.
 
-    An effect that another one explains as well counts as there when that one was found.
+    An effect also counts as present when one of its rivals was found.
     """
     judged = [one for one in ours if one["verdict"] is not None]
     there = [effect in _names(one) for one in judged]

@@ -1,6 +1,6 @@
-"""Parts of a run in which nothing happens that should: a piston that is stuck, a sensor that hangs, dead commands.
+"""Idle parts of a run: a stuck piston, a sensor that repeats one value, commands that do not change.
 
-All of them leave the run usable, so they are notes. A pressure sensor that shows no motion at all is an error.
+The run stays usable, so these are notes. A pressure sensor that shows no motion at all is an error.
 """
 
 from collections.abc import Iterator
@@ -17,23 +17,23 @@ Array = NDArray[np.float64]
 
 LONG = 5.0  # s: a running axis breaks away sooner, except for voltages at the edge of the dead zone
 _BLOCK = 0.05  # s
-_STILL = 1e-4  # m that bristles and noise move a piston at rest
-# times the air that fills a chamber from the atmosphere to the supply: 0.3 breaks a piston away, but a valve that
-# differs by 0.3 V from the model lets 0.13 more pass in each second
-_FILLS, _LATER, _FEWER = 1.2, 8.0, 0.6  # after LONG, and after so many s
+_STILL = 1e-4  # m: bristles and noise move a piston at rest by less
+# fillings of a chamber from atmosphere to supply pressure: 0.3 breaks a piston away, but a valve that differs by
+# 0.3 V from the model passes 0.13 more each second
+_FILLS, _LATER, _FEWER = 1.2, 8.0, 0.6  # fillings after LONG; s, and fillings after them
 _EDGE = 2e-3  # m from the end of the stroke
 _HANGS, _SLOWEST = (
     1.0,
     5e-3,
-)  # s of one value where noise would change it; s between samples: only faster ones show noise
+)  # s of one value without noise; s between samples: slower ones do not show noise
 _TRAVEL = 0.05  # m both ways
-_FLAT = 1.5  # noise deviations that a pressure sensor shows although nothing reaches it
+_FLAT = 1.5  # noise deviations: most that a disconnected pressure sensor shows
 _UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}
 _TOPICS = {"position_m": "the position", "pressure_a_pa": "chamber_a/pressure", "pressure_b_pa": "chamber_b/pressure"}
 
 
 def idle_notes(model: Model, run: Run) -> list[str]:
-    """Sentences on parts of `run` in which nothing happens that should. Raises DataError for a dead pressure sensor."""
+    """Sentences on idle parts of `run`. Raises DataError for a dead pressure sensor."""
     _check_alive(run)
     hung = {name: found for name, signal in run.signals.items() if (found := _hung(run, signal))}
     notes = [
@@ -49,7 +49,7 @@ def _check_alive(run: Run) -> None:
     noise, (out, back) = run.noise, _travel(run, 0)
     for name, signal in run.signals.items():
         fixed = np.ptp(signal) == 0.0 and max(out, back) > _TRAVEL
-        # A steady motion one way leaves pressures alone; nobody comes back without changing them.
+        # A steady motion one way does not change the pressures; the motion back does.
         flat = np.std(signal) < _FLAT * noise[name] and min(out, back) > _TRAVEL
         if name != "position_m" and (fixed or flat):
             raise DataError(
@@ -72,9 +72,9 @@ def _hung(run: Run, signal: Array) -> tuple[int, int] | None:
 
 
 def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
-    """Rests that are longer than a piston waits for its breakaway; a piston that never moves.
+    """Notes on rests that are too long for a breakaway, and on a piston that never moves.
 
-    Between the samples `since` and `until` the position is known to hang.
+    Between the samples `since` and `until` the position sensor is known to hang.
     """
     width = min(max(round(_BLOCK / run.sample_time), 1), len(run))
     still = _STILL + 6.0 * run.noise["position_m"]
@@ -110,7 +110,7 @@ def _quiet(blocks: Array, still: float) -> Iterator[tuple[int, int]]:
 
 
 def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
-    """What should have moved the piston during a rest, in words; empty when there is nothing."""
+    """The force or flow that should have moved the piston during a rest, in words; empty if none."""
     if abs(run.position[start]) > 0.5 * model["piston.stroke"] - _EDGE:
         return ""
     static = model.parameters.get("lugre_friction.static_friction", np.inf)
@@ -120,7 +120,7 @@ def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
         return f"{np.max(np.abs(force)):.3g} N push it, against {static:.3g} N of static friction"
     fewest = _FILLS if (stop - start) * run.sample_time < _LATER else _FEWER
     if not model.force_driven and (fills := _fills(model, run, start, stop)) > fewest:
-        return f"the valve lets pass {fills:.1f} times what fills a chamber"
+        return f"the valve passes {fills:.1f} times the air that fills a chamber"
     return ""
 
 
@@ -149,7 +149,7 @@ def _fills(model: Model, run: Run, start: int, stop: int) -> float:
 
 
 def _commands(run: Run) -> Iterator[str]:
-    """Whether the piston goes to and fro after the last change of the command."""
+    """A note if the piston moves both ways after the last change of the command."""
     changes = np.flatnonzero(np.diff(run.held)) + 1
     last = int(changes[-1]) if len(changes) else 0
     out, back = _travel(run, last)
@@ -157,7 +157,7 @@ def _commands(run: Run) -> Iterator[str]:
         when = f"after {run.time[last]:.3f} s" if last else "at all"
         yield (
             f"valve/command does not change {when}, held at {run.held[-1]:.4g} V, while the piston travels {out:.3g} m "
-            f"out and {back:.3g} m back: it may not be what drives the valve; flows and pressures cannot be judged then"
+            f"out and {back:.3g} m back: it may not drive the valve; flows and pressures cannot be judged then"
         )
 
 

@@ -1,7 +1,7 @@
-"""Whether a run can be what it says it is: mistakes of wiring, signs and gauge pressures, distinguished by the model.
+"""Whether a run is plausible: the model detects mistakes of wiring, signs and gauge pressures.
 
-Each mistake is undone on trial. When that makes the residuals of the equations several times smaller, the mistake was
-made: no effect that a model may lack does the same (see the tests, which hide every known one).
+Each mistake is corrected on trial. If that makes the residuals of the equations several times smaller, the mistake was
+made: no missing effect does the same (the tests hide every known effect).
 """
 
 from collections.abc import Callable
@@ -16,17 +16,17 @@ from pneumo_ros.reading.idle import idle_notes
 from pneumo_ros.runs.run import Run
 
 _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
-_GROWS = 1.5  # times larger residuals of a chamber disprove it: hidden friction or a closed valve only looked like it
-_POOR = 0.2  # share of a signal's size from which on a residual is worth asking what is wrong
-_MOVES = 0.01  # m, without which leaks look like an exchange or a reversal
-_VENTED = 0.5  # of the atmosphere's pressure: no running axis has an emptier chamber
+_GROWS = 1.5  # times larger residuals of a chamber disprove it: the cause is hidden friction or a closed valve
+_POOR = 0.2  # residual over signal above which mistakes are looked for
+_MOVES = 0.01  # m of motion: with less, leaks look like exchanged or reversed signals
+_VENTED = 0.5  # of the atmospheric pressure: chambers of a running axis are above it
 _BLOCK = 0.05  # s
 _UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
 
 
 @dataclass(frozen=True)
 class _Mistake:
-    """How a run looks when the mistake is undone, what it is, and what to do about it."""
+    """How to undo a mistake in a run, its description, its word for --read-as, and its remedy."""
 
     undo: Callable[[Run], Run]
     what: str
@@ -35,10 +35,10 @@ class _Mistake:
 
 
 def check_run(model: Model, run: Run) -> list[str]:
-    """Sentences on what `run` can still be used with: a piston that is stuck, a sensor that hangs, dead commands.
+    """Sentences on faults that leave `run` usable: stuck piston, hanging sensor, unchanged commands.
 
-    Raises DataError when the run leaves the stroke of `model`, a sensor is dead, or `model` finds that chambers,
-    position or voltage are the wrong way round, or pressures gauge ones.
+    Raises DataError when the run leaves the stroke of `model`, a sensor is dead, chambers are swapped, position
+    or voltage are reversed, or pressures are gauge pressures.
     """
     notes = idle_notes(model, run)
     found = _mistake(model, run)
@@ -66,13 +66,13 @@ def _mistake(model: Model, run: Run) -> str | None:
         return None
     reading = f"; a vented chamber reads {1e-3 * low:.3g} kPa" if best.word == "gauge" else ""
     return (
-        f"{run.name}: {best.what}{reading}. As recorded, '{model.name}' leaves unexplained {_sizes(recorded)}; read "
-        f"the other way, {_sizes(tried[best])}. Type --read-as {best.word}, or {best.mend}"
+        f"{run.name}: {best.what}{reading}. As recorded, the residuals of '{model.name}' are {_sizes(recorded)}; "
+        f"corrected, {_sizes(tried[best])}. Type --read-as {best.word}, or {best.mend}"
     )
 
 
 def _mistakes(model: Model) -> list[_Mistake]:
-    """What may be wrong with a recording of this kind of axis."""
+    """Possible mistakes in a recording of this kind of axis."""
     reversed_position = _Mistake(
         lambda run: replace(run, position=-run.position),
         "the position seems to count the wrong way; it grows when the rod extends",
@@ -120,7 +120,7 @@ def _gain(recorded: dict[str, float], undone: dict[str, float]) -> float:
 
 
 def _poor(model: Model, run: Run, recorded: dict[str, float]) -> bool:
-    """Whether a residual is a good part of what its equation is about: the drive force, or the flow into a chamber."""
+    """Whether a residual is a large share of its equation's signal: drive force, or flow into a chamber."""
     return any(rms > _POOR * _size(model, run, name) for name, rms in recorded.items())
 
 
@@ -142,7 +142,7 @@ def _size(model: Model, run: Run, equation: str) -> float:
 
 
 def _lowest(run: Run) -> float:
-    """The lowest pressure of both chambers [Pa], but for the lowest hundredth of the samples."""
+    """The lowest pressure of both chambers [Pa], without the lowest 1 % of the samples."""
     both = [np.percentile(p, 1) for p in (run.pressure_a, run.pressure_b) if p is not None]
     return float(min(both, default=np.inf))
 

@@ -12,7 +12,7 @@ from pneumo_ros.records.corrections import corrected
 from pneumo_ros.runs.cuts import Cut, without
 from pneumo_ros.runs.run import Run, make_run
 
-ATMOSPHERE = 101325.0  # Pa, for machines that do not say
+ATMOSPHERE = 101325.0  # Pa, for machine files without it
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class ReadOptions:
 
 @dataclass(frozen=True)
 class Reading:
-    """One recording, the run made of it, and sentences on what is wrong with either but leaves them usable."""
+    """One recording, its run, and sentences on faults that leave them usable."""
 
     recording: Recording
     run: Run
@@ -35,7 +35,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Readings:
-    """Several recordings: those that can be used, by path in the order given, and by path why others cannot."""
+    """Several recordings: usable ones by path, in the order given, and by path why others are not."""
 
     usable: Mapping[str, Reading]
     refused: Mapping[str, str] = field(default_factory=dict)
@@ -55,9 +55,9 @@ def corrected_recording(path: str | Path, options: ReadOptions, atmosphere: floa
 
 
 def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) -> tuple[Run, list[str]]:
-    """`recording` on a uniform grid without `cuts`, and sentences on parts of it in which nothing happens.
+    """`recording` on a uniform grid without `cuts`, and sentences on its idle parts.
 
-    Raises DataError when it does not hold what `model` needs, or cannot be what it says it is (see `check_run`).
+    Raises DataError when it lacks a signal that `model` needs, or is not plausible (see `check_run`).
     """
     run = without(make_run(recording, model.force_driven), cuts)
     return run, [f"{note}." for note in check_run(model, run)]
@@ -66,7 +66,7 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 def read_run(path: str | Path, model: Model, options: ReadOptions | None = None, cuts: Sequence[Cut] = ()) -> Reading:
     """The recording at `path` as a run for `model`; `cuts` [s] are left out.
 
-    Raises DataError when it cannot be read, does not hold what `model` needs, or cannot be what it says it is.
+    Raises DataError when it cannot be read, lacks a signal that `model` needs, or is not plausible.
     """
     atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
     recording = corrected_recording(path, options or ReadOptions(), atmosphere)
@@ -85,7 +85,7 @@ def read_runs(
     note: Callable[[str], object] = lambda text: None,
     refuse: Callable[[str, str], object] = lambda path, reason: None,
 ) -> Readings:
-    """The recordings at `paths` as runs for `model`; runs of the same name are called by their paths.
+    """The recordings at `paths` as runs for `model`; runs with equal names are named by their paths.
 
     `cuts` [s] by resolved path are left out. A recording that cannot be used is refused, but when it is among those
     `required`, its error is raised. While reading, `progress` gets the share done, `note` each sentence on a usable

@@ -65,9 +65,7 @@ def _values(store: Typestore, message_type: str, around: tuple[str, ...]) -> int
     if message_type in around:
         raise DataError(f"The recording's definition of {around[0]} holds {message_type} within itself.")
     total = 0
-    definition: Any = store.fielddefs.get(message_type, ((), ()))[
-        1
-    ]  # rosbags' own type of it is too general to check
+    definition: Any = store.fielddefs.get(message_type, ((), ()))[1]  # rosbags' own type of it is too general to check
     for _, (node, content) in definition:
         several = node in (Nodetype.ARRAY, Nodetype.SEQUENCE)
         inner, times = content if several else ((node, content), 1)

@@ -1,4 +1,4 @@
-"""Command lines of the nodes: what is not for ROS, and --help with the parameters."""
+"""Command lines of the nodes: arguments outside ROS, and --help with the parameters."""
 
 import argparse
 import sys

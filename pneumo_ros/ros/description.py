@@ -1,4 +1,4 @@
-"""The `description` topic: what machine this is, sent so often that every recording explains itself."""
+"""The `description` topic: the machine, sent often enough for every recording to contain it."""
 
 import json
 from collections.abc import Callable, Mapping

@@ -13,7 +13,7 @@ PERIOD = 1.0  # s
 
 
 class Diagnostics:
-    """Publishes what `health` returns, every second of the wall's time, paused or not."""
+    """Publishes what `health` returns, every second of wall time, paused or not."""
 
     def __init__(self, node: Node, health: Callable[[], Health]) -> None:
         self._node, self._health = node, health

@@ -1,4 +1,4 @@
-"""Messages as bytes, straight from the middleware's queues: what a recorder wants, at a tenth of an executor's cost.
+"""Messages as bytes, straight from the middleware's queues, at a tenth of an executor's cost.
 
 The middleware's own thread puts messages into a deep queue and notes when each arrived, so nothing depends on how soon
 they are fetched. The sequence numbers of the publishers show how many messages never arrived.
@@ -16,7 +16,7 @@ from pneumo_ros.ros.message_classes import message_class
 
 DEPTH = 5000  # messages of one topic that may wait: 5 s at 1 kHz
 
-# Best effort hears every publisher. Latched messages come only to reliable, transient local subscribers.
+# A best-effort subscriber hears every publisher. Latched messages come only to reliable, transient local subscribers.
 _PLAIN = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -36,7 +36,7 @@ class Intake:
     def __init__(self, owner: Node) -> None:
         """Topics are named as `owner` would name them."""
         self._owner = owner
-        # Its node is spun by nobody: an executor would take the messages itself and give no time of arrival.
+        # No executor spins this node: it would take the messages itself and give no time of arrival.
         self._node = Node(
             f"_{owner.get_name()}_intake",
             namespace=owner.get_namespace(),
@@ -50,7 +50,7 @@ class Intake:
         self._latched: set[str] = set()
 
     def subscribe(self, topic: str, message_type: str, latched: bool) -> None:
-        """Hear `topic` (a full name), or hear it differently. Raises UsageError when its type is not installed."""
+        """Subscribe to `topic` (a full name), or change it. Raises UsageError when its type is not installed."""
         kind = message_class(message_type)
         if topic in self._subscriptions:
             self._node.destroy_subscription(self._subscriptions[topic])
@@ -61,7 +61,7 @@ class Intake:
         (self._latched.add if latched else self._latched.discard)(topic)
 
     def relax(self) -> None:
-        """Hear topics that are to be latched, but whose publishers do not latch them, as any other."""
+        """Subscribe as volatile to topics that should be latched, but whose publishers do not latch them."""
         for topic in list(self._latched):
             offered = self._owner.get_publishers_info_by_topic(topic)
             if offered and not any(latches(one.qos_profile) for one in offered):
@@ -95,7 +95,7 @@ def latches(profile: QoSProfile) -> bool:
 
 
 def _publisher(info: dict[str, Any]) -> Hashable:
-    """Which publisher a message came from; the same for all where rclpy does not say."""
+    """Which publisher a message came from; the same for all where rclpy does not report it."""
     return bytes((info.get("publisher_gid") or {}).get("data", b""))
 
 

@@ -1,6 +1,6 @@
 """Message types by name: their Python classes, and their definitions, read from the classes.
 
-Definition files are not everywhere where classes are, and a recording must carry the definition that its bytes follow.
+Definition files are not installed with all classes, and a recording must carry the definition of its bytes.
 """
 
 import re
@@ -23,7 +23,7 @@ def message_class(message_type: str) -> Any:
 
 
 def definition(message_type: str) -> str:
-    """Definition of a type as a .msg file would say it, followed by those of the types within it."""
+    """Definition of a type as in a .msg file, followed by those of the types within it."""
     parts = {message_type: ""}
     waiting = [message_type]
     while waiting:
@@ -40,7 +40,7 @@ def definition(message_type: str) -> str:
 
 
 def _field_type(kind: str) -> str:
-    """ "sequence<double, 3>" -> "float64[<=3]": IDL's words in those of a .msg file."""
+    """ "sequence<double, 3>" -> "float64[<=3]": from IDL to .msg notation."""
     if found := re.fullmatch(r"sequence<(.+?)(?:, (\d+))?>", kind):
         return f"{_field_type(found[1])}[{'<=' + found[2] if found[2] else ''}]"
     if found := re.fullmatch(r"(.+)\[(\d+)\]", kind):

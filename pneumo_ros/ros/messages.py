@@ -1,4 +1,4 @@
-"""Sensor messages as bytes: serialised once, then only their numbers change. Sending one costs a third of an object."""
+"""Sensor messages as bytes: serialised once, then only their numbers change. Sending costs a third of an object's."""
 
 import struct
 
@@ -17,12 +17,12 @@ _MARK = Time(sec=0x1A2B3C4D, nanosec=0x0E0F1011)
 class Template:
     """A serialised message with places for its stamp and some numbers.
 
-    The places are found by the marks that the message was filled with, so nothing here knows its layout.
+    The places are found by the marks that the message was filled with, so its layout need not be known.
     """
 
     def __init__(self, message: JointState | FluidPressure | Clock | Float64, numbers: list[float]) -> None:
         """`message` has the stamp _MARK, if it has one, and each of `numbers`, in order, exactly once."""
-        # Behind an empty sequence rclpy leaves bytes that are no part of the message, and that other readers refuse.
+        # After an empty sequence rclpy leaves extra bytes, which other readers refuse.
         self._buffer = bytearray(trimmed(serialize_message(message), _type(message)))
         self._stamp = None if isinstance(message, Float64) else self._place(_STAMP.pack(_MARK.sec, _MARK.nanosec))
         self._numbers = [self._place(_NUMBER.pack(number)) for number in numbers]
@@ -47,7 +47,7 @@ def _type(message: JointState | FluidPressure | Clock | Float64) -> str:
 
 
 def joint_state(joint: str, velocity: bool = True, effort: bool = True) -> Template:
-    """Template of a joint state; `fill` takes position [m] and, of what there is, velocity [m/s] and effort [N]."""
+    """Template of a joint state; `fill` takes position [m] and, if present, velocity [m/s] and effort [N]."""
     position, speed, force = 1.2345e-67, 2.3456e-78, 3.4567e-89
     speeds, forces = [speed] if velocity else [], [force] if effort else []
     message = JointState(name=[joint], position=[position], velocity=speeds, effort=forces)

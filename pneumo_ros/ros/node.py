@@ -33,7 +33,7 @@ class AxisNode(Node):
     """Base of the nodes: `parameters`, 1 Hz `/diagnostics` from `health`, `start` and `finish` for subclasses."""
 
     def __init__(self, name: str, settings: Iterable[Setting], simulated_time: bool | None = None) -> None:
-        """Declare `settings`; `simulated_time` decides on use_sim_time, whatever was given for it.
+        """Declare `settings`; `simulated_time`, unless None, overrides use_sim_time.
 
         Raises UsageError for a given value of wrong type or out of range.
         """
@@ -43,7 +43,7 @@ class AxisNode(Node):
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             raise UsageError(str(error)) from error
         self.failure: Exception | None = None  # what ended this node; `run` reports it
-        self.end: Callable[[], None] = lambda: None  # asks for the end of the process; `run` says how
+        self.end: Callable[[], None] = lambda: None  # asks for the end of the process; set by `run`
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.parameters = Parameters(self)
         self.parameters.declare(settings)

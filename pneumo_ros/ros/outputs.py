@@ -1,4 +1,4 @@
-"""Publishers for the topics of a recording: under which name each is played, and whether it can be."""
+"""Publishers for the topics of a recording: the name under which each is played, and whether it can be played."""
 
 from collections.abc import Iterable
 
@@ -16,12 +16,12 @@ from pneumo_ros.records.message_types import channel_types, same_fields, types_o
 from pneumo_ros.ros.message_classes import definition, message_class
 from pneumo_ros.ros.qos import LATCHED
 
-REPLAY = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)  # bursts must not push each other out
-ACKNOWLEDGED = Duration(seconds=1.0)  # longest wait for subscribers that have not got everything
+REPLAY = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)  # bursts must not overflow the queue
+ACKNOWLEDGED = Duration(seconds=1.0)  # longest wait for subscribers that lack messages
 
 
 class Outputs:
-    """Publishers by recorded topic. Topics that cannot be played are left out, which is said."""
+    """Publishers by recorded topic. Topics that cannot be played are left out with a warning."""
 
     def __init__(self, node: Node, channels: Iterable[Channel]) -> None:
         self._node = node
@@ -57,7 +57,7 @@ class Outputs:
             publisher.wait_for_all_acked(ACKNOWLEDGED)
 
     def _publisher(self, channel: Channel, name: str) -> Publisher:
-        """Raises UsageError or DataError when the type is not installed, or not as it was when it was recorded."""
+        """Raises UsageError or DataError when the type is not installed, or has other fields than in the recording."""
         kind = message_class(channel.type)
         installed = types_of(channel.type, "ros2msg", definition(channel.type))
         if not same_fields(channel_types(channel), installed, channel.type):

@@ -1,4 +1,4 @@
-"""Parameters of a node, declared from data: checked as a whole before any is taken, whole numbers accepted as real."""
+"""Parameters of a node, declared from data: checked together before any is set; integers count as real numbers."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -20,9 +20,9 @@ Values = Mapping[str, Any]
 class Parameters:
     """The declared parameters of one node.
 
-    `begun_with` are those from files and command line, which rclpy declared without description; `given`, what of them
-    is not yet declared. A change from outside runs
-    `check` with all values as they would become, which may raise UsageError and changes nothing, then `apply`.
+    `begun_with` are those from files and command line, which rclpy declared without description; `given` are those of
+    them that are not yet declared. A change from outside calls `check` with all new values, which may refuse it with
+    UsageError, then `apply`.
     """
 
     def __init__(self, node: Node) -> None:
@@ -56,18 +56,18 @@ class Parameters:
                 self._node.declare_parameter(setting.name, value, descriptor(setting, value), ignore_override=True)
 
     def undeclare(self, names: Iterable[str]) -> None:
-        """Forget live parameters that have lost their meaning, as those of an effect that was removed."""
+        """Remove live parameters that are no longer used, such as those of a removed effect."""
         for name in names:
             del self._settings[name]
             self._node.undeclare_parameter(name)
 
     def update(self, values: Values) -> None:
-        """Set values from inside the node; `check` and `apply` are not asked."""
+        """Set values from inside the node; `check` and `apply` are not called."""
         with self._declaring():
             self._node.set_parameters_atomically([Parameter(name, value=value) for name, value in values.items()])
 
     def refuse_unknown(self, tolerated: Callable[[str], bool] = lambda name: False) -> None:
-        """Raise UsageError, with the nearest names, if something was given that nobody declared."""
+        """Raise UsageError, with the nearest names, if an undeclared parameter was given."""
         for name in self.given:
             if not tolerated(name):
                 raise UsageError(unknown_name("parameter", name, self._settings))
@@ -98,7 +98,7 @@ class Parameters:
     # --- callbacks of rclpy -----------------------------------------------------------------------------------------
 
     def _whole_numbers(self, parameters: list[Parameter]) -> list[Parameter]:
-        """`mass: 5` where `mass: 5.0` is meant would be refused for its type."""
+        """Convert integers: ROS refuses `mass: 5` for a parameter declared as 5.0."""
         return [self._as_declared(p) for p in parameters]
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
@@ -131,7 +131,7 @@ class Parameters:
 
 
 def descriptor(setting: Setting, value: Value) -> ParameterDescriptor:
-    """The ROS descriptor; `value` is the one at the start, which open ranges are made to contain.
+    """The ROS descriptor; `value` is the start value; open ranges are chosen to contain it.
 
     Ranges are finite, because tuning tools draw sliders from them, and continuous (step 0).
     """

@@ -1,4 +1,4 @@
-"""Whether the node on the other side of a loop of two topics is there, as far as this side can see."""
+"""Whether the node on the other side of a loop of two topics is connected."""
 
 from rclpy.node import Node
 from rclpy.publisher import Publisher

@@ -1,4 +1,4 @@
-"""The player node: a recording as live topics, its bytes as they were recorded, in their original timing."""
+"""The player node: a recording as live topics, with its original bytes and timing."""
 
 import sys
 import threading
@@ -26,14 +26,14 @@ from pneumo_ros.ros.run import run
 CLOCK = "/clock"
 SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let reading ahead delay a message
 POLL = 0.02  # s between two looks for subscribers
-SETTLE = 0.3  # s; a subscriber finds its publisher later than it is found
-LATE = 0.02  # s behind its time at which a message is worth a word
+SETTLE = 0.3  # s; a subscriber may find its publisher later than the publisher finds it
+LATE = 0.02  # s of delay from which a late message is reported
 
 SETTINGS = (
     Setting("input", "", "recording to play: a rosbag2 folder, or an .mcap or .db3 file", live=False),
-    Setting("topics", ["*"], "topics to play, named as recorded; * and ? stand for any letters", live=False),
+    Setting("topics", ["*"], "topics to play, named as recorded; * and ? match any letters", live=False),
     Setting("rate", 1.0, "seconds of the recording that pass in one second", "", 1e-3, 1e3, live=False),
-    Setting("start_offset", 0.0, "time to skip at the start; latched topics come all the same", "s", 0.0, live=False),
+    Setting("start_offset", 0.0, "time to skip at the start; latched topics are still sent", "s", 0.0, live=False),
     Setting("loop", False, "begin again at the end", live=False),
     Setting("publish_clock", False, "send the recorded time on /clock", live=False),
     Setting("wait", 3.0, "longest wait for a subscriber to every topic before the start", "s", 0.0, 3600.0, live=False),
@@ -42,7 +42,7 @@ SETTINGS = (
 
 
 class Player(AxisNode):
-    """Plays the recording `input` and ends the process at its end, unless it is to `loop`."""
+    """Plays the recording `input` and ends the process at its end, unless `loop` is set."""
 
     def __init__(self) -> None:
         super().__init__("player", SETTINGS)
@@ -70,7 +70,7 @@ class Player(AxisNode):
         self._thread.start()
 
     def health(self) -> Health:
-        """Where in the recording it is, and how punctual."""
+        """Position in the recording, and delay of messages."""
         playback = self._playback
         late = playback.behind * 1e-9
         values = {
@@ -106,7 +106,7 @@ class Player(AxisNode):
             self.fail(failure)
 
     def _await_subscribers(self) -> None:
-        """Discovery takes its time, and who has not found this node yet misses the first messages."""
+        """Wait for discovery: a subscriber that has not found this node misses the first messages."""
         deadline = time.monotonic() + self.parameters["wait"]
         while time.monotonic() < deadline and not self._playback.stop.is_set():
             if self._outputs.heard():
@@ -128,7 +128,7 @@ class Player(AxisNode):
             raise UsageError(f"start_offset is {offset:g} s, but the recording lasts {duration:.3f} s")
 
     def _chosen(self, path: Path, overview: Overview) -> list[str]:
-        """Recorded topics that match the parameter `topics`. Raises DataError for one that matches none."""
+        """Recorded topics that match the parameter `topics`. Raises DataError for a pattern that matches none."""
         chosen: set[str] = set()
         for pattern in self.parameters["topics"]:
             matching = {name for name in overview.channels if fnmatchcase(name.lstrip("/"), pattern.lstrip("/"))}

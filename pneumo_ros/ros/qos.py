@@ -1,4 +1,4 @@
-"""How topics are sent and taken: publishers reliable, subscribers content with best effort, keep last."""
+"""Quality of service of topics: reliable publishers, best-effort subscribers, keep last."""
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 

@@ -1,9 +1,9 @@
-"""Numbers out of received bytes: at 1 kHz, building the objects of a message costs more than all that is done with it.
+"""Numbers from received bytes: at 1 kHz, building message objects costs more than all work with their numbers.
 
 CDR as in OMG formal/02-06-51, section 9.3: four bytes of encapsulation, then little-endian numbers, aligned to their
 size from there; a string or sequence is its length and its elements. Any other encapsulation goes through rclpy.
 
-Anybody may publish anything: bytes that are no message of their type read as NaN, or as no joint.
+Any node may publish anything: bytes that are not a valid message read as NaN, or as no joint.
 """
 
 import math
@@ -22,7 +22,7 @@ _START = 12  # after encapsulation and stamp: the length of header.frame_id
 
 
 class JointSample(NamedTuple):
-    """What a joint state says of one joint: stamp [ns], position [m], velocity [m/s] if there is one."""
+    """One joint of a joint state: stamp [ns], position [m], velocity [m/s] if there is one."""
 
     stamp: int
     position: float
@@ -33,7 +33,7 @@ def number(data: bytes) -> float:
     """The number of a std_msgs/Float64."""
     try:
         return float(_NUMBER.unpack_from(data, 4)[0] if data[:2] == _PLAIN else deserialize_message(data, Float64).data)
-    except Exception:  # of struct, or one of the middleware's own
+    except Exception:  # from struct or from the middleware
         return math.nan
 
 
@@ -56,7 +56,7 @@ def stamp_of(data: bytes, message_type: str) -> int:
         else:
             stamp = deserialize_message(data, message_class(message_type)).header.stamp
             seconds, nanoseconds = stamp.sec, stamp.nanosec
-    except Exception:  # of struct, or one of the middleware's own: anybody may publish anything
+    except Exception:  # from struct or from the middleware: any node may publish anything
         return 0
     return int(seconds) * 1_000_000_000 + int(nanoseconds)
 
@@ -67,7 +67,7 @@ class JointReader:
     def __init__(self, joint: str, whole: bool = False) -> None:
         """Look for `joint`; with `whole` only where there are as many positions as names.
 
-        ros2_control leaves out what a joint has no interface for: then it is unknown whose positions these are.
+        ros2_control leaves out values without an interface: then it is unknown which joint a position belongs to.
         """
         self._joint, self._whole = joint, whole
         self._length, self._fixed, self._after = -1, b"", b""
@@ -77,8 +77,8 @@ class JointReader:
         """The joint's sample of a sensor_msgs/JointState; None if it holds no position of that joint."""
         try:
             return self._read(data)
-        except Exception:  # no JointState at all: of struct, or one of the middleware's own
-            self._length = -1  # what was learnt from it is nothing
+        except Exception:  # not a JointState: from struct or from the middleware
+            self._length = -1  # forget the learnt layout
             return None
 
     def _read(self, data: bytes) -> JointSample | None:
@@ -92,7 +92,7 @@ class JointReader:
         return JointSample(seconds * 1_000_000_000 + nanoseconds, position, velocity)
 
     def names(self, data: bytes) -> list[str]:
-        """Names of all joints of a message; none of what is no message."""
+        """Names of all joints of a message; none for other bytes."""
         try:
             return list(deserialize_message(data, JointState).name)
         except Exception:  # likewise
@@ -129,7 +129,7 @@ class JointReader:
         return JointSample(stamp.sec * 1_000_000_000 + stamp.nanosec, message.position[index], velocity)
 
     def _index(self, message: JointState) -> int | None:
-        """Where the joint's position stands; None if there is none, or it is unknown."""
+        """Index of the joint's position; None if there is none, or it is unknown."""
         names, positions = list(message.name), len(message.position)
         if self._joint not in names or (self._whole and positions != len(names)):
             return None

@@ -1,4 +1,4 @@
-"""The recorder node: topics into a rosbag2 folder, as bytes, nothing lost, whole at any time."""
+"""The recorder node: topics as bytes into a rosbag2 folder that is valid at any time."""
 
 import sys
 import threading
@@ -28,7 +28,7 @@ SETTINGS = (
     Setting("output", "", "folder to make; none: recording_ and the time, in the current folder", live=False),
     Setting(
         "topics", [*TYPES, "/diagnostics"],
-        "topics to record, of the node's namespace unless they start with /; * and ? stand for any letters", live=False,
+        "topics to record, of the node's namespace unless they start with /; * and ? match any letters", live=False,
     ),
     PRIORITY,
 )  # fmt: skip
@@ -56,7 +56,7 @@ class Recorder(AxisNode):
         self.get_logger().info(f"recording to {self._writer.path}")
 
     def start(self) -> None:
-        """Ask for real-time scheduling: beside nodes that have it, the middleware's queues would overflow unread."""
+        """Ask for real-time scheduling: otherwise nodes that have it make the middleware's queues overflow."""
         self._priority = take_priority(self.parameters[PRIORITY.name])
 
     def health(self) -> Health:
@@ -76,7 +76,7 @@ class Recorder(AxisNode):
         return Health({**values, **{f"lost_on {topic}": number for topic, number in lost.items()}}, warnings)
 
     def finish(self) -> None:
-        """Record what has arrived, close the bag, and say what is in it."""
+        """Record what has arrived, close the bag, and log its contents."""
         with self._lock:
             if self._ended:
                 return
@@ -91,10 +91,10 @@ class Recorder(AxisNode):
         )
 
     def _take(self) -> None:
-        """Fetch what has arrived, and record what nothing earlier can follow.
+        """Fetch new messages, and record those that no earlier message can follow.
 
-        Readers of a bag whose recorder was killed want its messages in the order of time. Messages of this round may
-        still be overtaken by some of a topic that was looked at before; those of the round before cannot.
+        Messages must be in the order of time, also in the bag of a killed recorder. An earlier message may still follow
+        those of this round, but not those of the round before.
         """
         with self._lock:
             if self._ended:
@@ -125,7 +125,7 @@ class Recorder(AxisNode):
         return BagTopic(topic, kind, bool(offered) and all(map(latches, offered)), reliable, definition(kind))
 
     def _discover(self) -> None:
-        """Subscribe to selected topics that have come up."""
+        """Subscribe to selected topics that have appeared."""
         for topic, kind, latched in self._selection.appeared(self._intake.types):
             self._intake.subscribe(topic, kind, latched)
         self._intake.relax()

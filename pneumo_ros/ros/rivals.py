@@ -1,5 +1,4 @@
-"""Whether another node has the same role in this namespace: two plants, or two controllers, would work against each
-other.
+"""Whether another node has the same role in this namespace: two plants or two controllers would conflict.
 
 Every node with a role makes a claim: a latched message with the time of its start. Of two nodes with the same role the
 later one ends. Discovery on one PC takes 0.03 to 0.08 s or, where an announcement is lost, 2.4 to 2.8 s (8 and 4 of 12
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from pneumo_ros.ros.node import AxisNode
 
 WAIT = 0.3  # s from the claim to the first look at who publishes
-WAIT_FOR_CLAIM = 2.0  # s, where somebody publishes: its name and its claim arrive after that is discovered
+WAIT_FOR_CLAIM = 2.0  # s, if a node publishes: its name and its claim arrive after its publisher
 POLL = 0.02  # s between two looks during these times
 PERIOD = 1.0  # s between two looks while the node runs
 UNKNOWN, UNNAMED = "_NODE_NAME_UNKNOWN_", "a program whose name is unknown"  # of rmw; in messages
@@ -59,7 +58,7 @@ class Rivals:
         self._node.create_timer(PERIOD, self.look, clock=self._node.steady_clock)
 
     def _wait(self, enough: Callable[[set[str]], bool], end: float) -> set[str]:
-        """Who publishes without a later claim, as soon as that is `enough`, or at the time `end` [s, monotonic]."""
+        """Nodes that publish without a later claim, when they are `enough` or at the time `end` [s, monotonic]."""
         found = self._starting()
         while not enough(found) and time.monotonic() < end:
             time.sleep(POLL)
@@ -67,7 +66,7 @@ class Rivals:
         return found
 
     def _starting(self) -> set[str]:
-        """Hear claims; raises UsageError for an earlier one. Who publishes without a later claim."""
+        """Take claims, UsageError for an earlier one; returns nodes that publish without a later claim."""
         self._take_claims()
         self._require_first()
         return self._publishing(self._role.topics)
@@ -120,7 +119,7 @@ class Rivals:
             raise self._refusal(earlier)
 
     def _deliver(self) -> None:
-        """Let the nodes that were first hear of this one before it ends: discovery of its claim may take longer."""
+        """Wait until the earlier nodes have this node's claim: its discovery may take longer."""
         end = time.monotonic() + WAIT_FOR_CLAIM
         while self._claims.get_subscription_count() < 1 + len(self._others) and time.monotonic() < end:
             time.sleep(POLL)

@@ -31,7 +31,7 @@ def make_executor() -> Executor:
 
 
 class Spinner:
-    """Runs the callbacks of nodes in a thread of their own, so that the main thread is free to hear signals.
+    """Runs the callbacks of nodes in a thread of their own, so that the main thread can handle signals.
 
     An exception of a callback ends the thread; it is kept in `failure`, and `ended` is called.
     """
@@ -69,7 +69,7 @@ class Spinner:
 def run(make: Callable[[], Sequence[AxisNode]], name: str, ros_args: Sequence[str] | None = None) -> int:
     """Run the nodes that `make` builds until SIGINT or SIGTERM; returns the exit code of the process.
 
-    `name` introduces messages; `ros_args` are the arguments rclpy reads, None for those of the command line. A
+    `name` precedes messages; `ros_args` are the arguments rclpy reads, None for those of the command line. A
     PneumoError is reported in one line and gives its exit code; anything else with its traceback, and gives 1.
     """
     listen_for_signals()
@@ -102,7 +102,7 @@ def _live(make: Callable[[], Sequence[AxisNode]]) -> None:
         spinner = Spinner(nodes, STOP.set)
         with spinner:
             gc.collect()
-            gc.freeze()  # what exists now stays; collections under way then take microseconds
+            gc.freeze()  # existing objects stay; later collections take microseconds
             for node in nodes:
                 node.end = STOP.set
                 node.start()

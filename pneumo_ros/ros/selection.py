@@ -1,4 +1,4 @@
-"""Which topics are meant by a list of names and patterns, and of what type they are."""
+"""Topics selected by a list of names and patterns, and their types."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from fnmatch import fnmatchcase
@@ -14,11 +14,11 @@ from pneumo_ros.ros.message_classes import message_class
 class Selection:
     """Topics by name, relative to the node's namespace and remapped, or by pattern with * and ?.
 
-    `known` are those whose type the contract says: (type, latched) by resolved name.
+    `known` are those in the contract: (type, latched) by resolved name.
     """
 
     def __init__(self, node: Node, names: Iterable[str]) -> None:
-        """Raises UsageError for a name that cannot be one."""
+        """Raises UsageError for an invalid name."""
         self._node = node
         self._refused: set[str] = set()
         self._patterns = [resolve(node, name) for name in names]
@@ -38,7 +38,7 @@ class Selection:
         return any(fnmatchcase(topic, pattern) for pattern in self._patterns)
 
     def _usable(self, topic: str, kind: str) -> bool:
-        """Whether messages of type `kind` can be heard here; said once if not."""
+        """Whether messages of type `kind` can be received here; a warning says once if not."""
         try:
             message_class(kind)
         except UsageError as error:
@@ -49,7 +49,7 @@ class Selection:
 
 
 def resolve(node: Node, name: str) -> str:
-    """Full name of a topic of `node`; a pattern only gets the namespace. Raises UsageError for a name that is none."""
+    """Full name of a topic of `node`; a pattern only gets the namespace. Raises UsageError for an invalid name."""
     if set(name) & set("*?["):
         return name if name.startswith("/") else f"{node.get_namespace().rstrip('/')}/{name}"
     try:
@@ -59,7 +59,7 @@ def resolve(node: Node, name: str) -> str:
 
 
 def _by_contract(topic: str) -> tuple[str, bool] | None:
-    """Type of a topic the contract knows, and whether it is latched."""
+    """Type of a topic in the contract, and whether it is latched; None for others."""
     if topic in contract.GLOBAL_TYPES:
         return contract.GLOBAL_TYPES[topic], False
     found = contract.split(topic)

@@ -1,8 +1,8 @@
-"""The watcher: what an axis does right now, as lines of JSON for a page; and parameters of its nodes, set on request.
+"""The watcher: live data of an axis as lines of JSON for a page; it sets parameters of its nodes on request.
 
-A line on standard output every 100 ms: `series`, name -> [[time s, value], ...] since the last line, and `status`, what
-each node says of itself. A line on standard input, {"node": "/simulator", "name": "piston.mass", "value": 6.0}, sets a
-parameter; the answer is a line {"answer": ..., "successful": ...}. It ends with its standard input.
+A line on standard output every 100 ms: `series`, name -> [[time s, value], ...] since the last line, and `status`, the
+diagnostics of each node. A line on standard input, {"node": "/simulator", "name": "piston.mass", "value": 6.0}, sets a
+parameter; the answer is a line {"answer": ..., "successful": ...}. It ends when its standard input closes.
 """
 
 import json
@@ -33,7 +33,7 @@ SETTINGS = (Setting("joint_name", contract.JOINT, "the piston in joint_states", 
 
 
 class Watcher(AxisNode):
-    """Reports what it hears."""
+    """Reports received messages."""
 
     def __init__(self) -> None:
         super().__init__("watcher", SETTINGS)
@@ -95,7 +95,7 @@ class Watcher(AxisNode):
 
 
 def _status(payload: bytes) -> dict[str, Any]:
-    """What nodes say of themselves: level, sentence and values by node."""
+    """Diagnostics by node: level, sentence and values."""
     found = deserialize_message(payload, DiagnosticArray).status
     return {
         one.name: {"level": one.level[0], "message": one.message, "values": {p.key: p.value for p in one.values}}

@@ -16,7 +16,7 @@ _LEAST = 50  # samples that must remain
 def parse_cuts(given: Sequence[str]) -> dict[Path, tuple[Cut, ...]]:
     """Cuts by the resolved path of their recording, from texts `BAG:FROM-TO` in seconds.
 
-    Raises UsageError for a text of another form, a recording that is not there, and an end before its beginning.
+    Raises UsageError for a text of another form, a missing recording, and an end before its beginning.
     """
     found: dict[Path, tuple[Cut, ...]] = {}
     for text in given:

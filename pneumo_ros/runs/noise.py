@@ -7,17 +7,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ORDER = 4  # differences: annihilate motion that is cubic over five samples
+_ORDER = 4  # of the differences: they remove motion that is cubic over five samples
 _BLOCK = 100  # samples
 
 
 def noise_level(signal: Array) -> float:
     """Standard deviation of the white noise in a sampled smooth signal (n,), quantisation included.
 
-    Differences of fourth order remove the motion; their variance, taken in short blocks, is that of the noise in all
-    blocks but those with an event (breakaway, impact): the middle half of the blocks by size is averaged. Floors: a
-    signal at rest within its quantisation step q gets the q / sqrt(12) of a uniform error, and no sensor is taken to
-    resolve better than a millionth of what it spans.
+    Fourth-order differences remove the motion. Their variance in short blocks is that of the noise, except in blocks
+    with an event (breakaway, impact): the middle half of the blocks, sorted by variance, is averaged. Lower limits:
+    q / sqrt(12), the uniform error of a quantisation step q, and a millionth of the signal's span.
     """
     differences = np.diff(signal, _ORDER) if len(signal) > _ORDER else np.zeros(1)
     gain = sum(comb(_ORDER, k) ** 2 for k in range(_ORDER + 1))

@@ -1,4 +1,4 @@
-"""A recording laid on a uniform time grid, as the integrator and the estimators want it."""
+"""A recording laid on a uniform time grid, as the integrator and the estimators need it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,10 +15,10 @@ from pneumo_ros.runs.smooth import Smoothed, smoothed
 
 Array = NDArray[np.float64]
 
-PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts when it came
+PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts at its time
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
-_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # no sensor of such a machine is better
-_MILLIMETRES = 20.0  # half strokes: farther, positions are in mm, or in nothing at all
+_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # the best sensors of such machines
+_MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Run:
 
     @cached_property
     def force(self) -> Array:
-        """(n - 1,) driving force [N] at the samples; meaningful when force-driven, where it is linear in between."""
+        """(n - 1,) driving force [N] at the samples of a force-driven run; it is linear in between."""
         first, second = self.input[::PARTS], self.input[1::PARTS]
         return np.asarray(1.5 * first - 0.5 * second)
 
@@ -66,7 +66,7 @@ class Run:
 
     @cached_property
     def smoothed(self) -> Smoothed:
-        """Velocity and acceleration, and the measured states they go with, smoothed."""
+        """Smoothed measured states, with velocity and acceleration."""
         return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
 
 
@@ -74,7 +74,7 @@ def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
     `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, sampled too
-    slowly, or holds no pressures, no absolute ones or no input for the kind asked for.
+    slowly, or lacks the input or the absolute pressures of this kind.
     """
     time = recording.time
     driven = recording.force_driven if force_driven is None else force_driven
@@ -105,7 +105,7 @@ def _array(signal: Array | None) -> Array:
 
 
 def check_position(model: Model, run: Run) -> None:
-    """Raises DataError when a run leaves the stroke of `model` by more than a stop can give way."""
+    """Raises DataError when a run leaves the stroke of `model` by more than an end stop yields."""
     reach = 0.5 * model["piston.stroke"]
     farthest = int(np.argmax(np.abs(run.position)))
     most = abs(run.position[farthest])

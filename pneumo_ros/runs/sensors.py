@@ -1,4 +1,4 @@
-"""What the machine did, from what its sensors read: measurements corrected for the sensor effects of a model."""
+"""True states from sensor readings: measurements corrected for the sensor effects of a model."""
 
 from collections.abc import Callable, Sequence
 
@@ -12,7 +12,7 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-# from frames (lanes, n, 2 or 4) and which lanes they are to states and mean derivatives, both (lanes, n, states)
+# frames (lanes, n, 2 or 4) and lane numbers -> states and mean derivatives, both (lanes, n, states)
 Drive = Callable[[Array, Index], tuple[Array, Array]]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
@@ -20,10 +20,10 @@ _ENOUGH = (1e-7, 1.0, 1.0)  # m, Pa, Pa: a tenth of what any sensor of such a ma
 
 
 def corrected(model: Model, frame: Array, run: Run) -> Array:
-    """Frame states (n, 2 or 4) behind measured ones: y, v, p_a, p_b without what the model's sensor effects did.
+    """True frame states (n, 2 or 4) from measured ones: y, v, p_a, p_b without the model's sensor effects.
 
-    `frame` holds the measured position, its derivative and, with chambers, the pressures. The very same array comes
-    back from a model without sensor effects.
+    `frame` holds the measured position, its derivative and, with chambers, the pressures. A model without sensor
+    effects returns the same array.
     """
     return frame if model.composition.true_sensors else driven(model, frame, run)[0][:, : frame.shape[1]]
 
@@ -46,13 +46,13 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
 def driven_lanes(
     model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, enough: Sequence[float]
 ) -> tuple[Array, Array, Array]:
-    """Frame states without what sensors do (lanes, n, 2 or 4), and what `drive` makes along them: states and rates.
+    """Frame states without sensor effects (lanes, n, 2 or 4), and states and rates from `drive` along them.
 
-    The readings r(x) are inverted by the fixed point x = x_measured - (r(x) - x), of two steps at most, which drives
-    the sensors' own states again each time; the velocity is corrected by the derivative of the correction of position.
-    Each lane stops by itself, when its correction changes by no more than `enough` [m, Pa, Pa]: what it gives does not
-    depend on those beside it. A lane that has left the finite numbers comes back as it is. parameters (lanes,
-    parameters), or None for one lane with the model's own.
+    The readings r(x) are inverted by at most two steps of the fixed point x = x_measured - (r(x) - x); each step drives
+    the sensors' own states again. The velocity is corrected by the derivative of the correction of position. Each lane
+    stops when its correction changes by no more than `enough` [m, Pa, Pa], so its result does not depend on other
+    lanes. A lane with values that are not finite is returned as it is. parameters (lanes, parameters), or None for one
+    lane with the model's own.
     """
     count = 1 if parameters is None else len(parameters)
     moving, before = np.arange(count), np.zeros((count, 1, 1))
@@ -73,7 +73,7 @@ def driven_lanes(
 def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:
     """What to add to the readings (lanes, n, 1 or 3) of position and pressures to get these states (lanes, n, states).
 
-    parameters (lanes, parameters) or None, where all lanes are the model's.
+    parameters (lanes, parameters) or None for the model's own.
     """
     voltage = np.concatenate([run.input[:PARTS], run.input])  # row k is read under the last voltage before it
     first, dt = np.zeros(len(states), dtype=np.int64), run.sample_time

@@ -1,4 +1,4 @@
-"""Velocity and acceleration from sampled positions, with a stated noise gain."""
+"""Velocity and acceleration from sampled positions, with a known noise gain."""
 
 from dataclasses import dataclass
 from functools import lru_cache

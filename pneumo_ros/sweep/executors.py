@@ -1,4 +1,4 @@
-"""What work runs on, each a concurrent.futures.Executor: this process, others beside it, or a Dask cluster."""
+"""Executors (concurrent.futures) for work: this process, other processes, or a Dask cluster."""
 
 import multiprocessing
 import os
@@ -17,7 +17,7 @@ _T = TypeVar("_T")
 
 
 class Here(Executor):
-    """Runs what is submitted at once, in this process: for debugging, and as the measure of all others."""
+    """Runs submitted work at once in this process: for debugging, and as the reference for the others."""
 
     def submit(self, work: Callable[_P, _T], /, *given: _P.args, **named: _P.kwargs) -> "Future[_T]":
         """The future of work that is done already."""
@@ -30,21 +30,21 @@ class Here(Executor):
 
 
 class Pool:
-    """An executor that can be replaced when it breaks, and how many pieces of work it takes at a time."""
+    """An executor that can be replaced when it breaks, and its number of workers."""
 
     def __init__(self, make: Callable[[], Executor], workers: int) -> None:
-        """`make` gives a fresh executor, any of concurrent.futures; it has so many `workers`."""
+        """`make` returns a new executor of concurrent.futures with `workers` workers."""
         self._make, self.workers = make, workers
         self.executor = make()
 
     def renew(self) -> None:
-        """Another executor in place of one whose workers died."""
+        """Replace an executor whose workers died."""
         self.close()
         self.executor = self._make()
 
     def close(self) -> None:
-        """Give up what waits, and let the executor go."""
-        with suppress(Exception):  # a broken one may complain once more
+        """Cancel waiting work and shut the executor down."""
+        with suppress(Exception):  # a broken one may raise again
             self.executor.shutdown(wait=False, cancel_futures=True)
 
     def __enter__(self) -> "Pool":
@@ -55,7 +55,7 @@ class Pool:
 
 
 def open_pool(name: str = "processes") -> Pool:
-    """The pool that `name` asks for: one of FORMS.
+    """The pool for `name`, one of FORMS.
 
     Raises UsageError for another name or without the package `distributed`, DataError when no scheduler answers.
     """
@@ -84,7 +84,7 @@ def _dask(address: str) -> Pool:
     if "://" not in address:
         raise UsageError(f"dask={address} takes the address of a scheduler, such as dask=tcp://localhost:8786")
     try:
-        connect: Any = Client  # of a package that is typed in parts
+        connect: Any = Client  # of a package that is only partly typed
         client = connect(address, timeout=10, set_as_default=False)
     except (OSError, ValueError) as error:
         raise DataError(f"no Dask scheduler answers at {address}; start one: dask scheduler") from error
@@ -92,5 +92,5 @@ def _dask(address: str) -> Pool:
     if not workers:
         client.close()
         raise DataError(f"the Dask scheduler at {address} has no workers; start some: dask worker {address}")
-    # what a worker computes is thrown away with it, so the cluster must not take equal calls for the same one
+    # results are lost with their worker, so the cluster must not merge equal calls
     return Pool(lambda: client.get_executor(pure=False, retries=2), 2 * workers)

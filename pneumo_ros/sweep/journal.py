@@ -1,4 +1,4 @@
-"""Results as they come, a line of JSON each: an interrupted sweep goes on from what it had."""
+"""Results as lines of JSON: an interrupted sweep continues from them."""
 
 import json
 import os
@@ -13,12 +13,12 @@ from pneumo_ros.errors import DataError, UsageError
 class Journal:
     """Results by key, in memory and in a file. A context manager.
 
-    The file belongs to one sweep, named by `purpose`: what was computed for another one, of other code or with other
-    options, is not taken for a result of this one. A last line that was cut off is dropped.
+    The file belongs to one sweep, named by `purpose`: results of another sweep, with other code or options, are
+    refused. An incomplete last line is dropped.
     """
 
     def __init__(self, path: str | Path, purpose: Mapping[str, Any]) -> None:
-        """Open or begin the file.
+        """Open or create the file.
 
         Raises UsageError when it belongs to another sweep, DataError when it is damaged or cannot be used.
         """
@@ -36,11 +36,11 @@ class Journal:
             raise DataError(f"cannot use {path} for results: {error.strerror}") from error
 
     def put(self, key: str, result: Any) -> None:
-        """Keep a result that JSON can hold; it is on the disk when this returns. Raises DataError when that is full."""
+        """Save a JSON-compatible result; it is on the disk on return. Raises DataError when the disk is full."""
         try:
             self._write(json.dumps({"key": key, "result": result}))
         except OSError as error:
-            raise DataError(f"cannot write {self.path}: {error.strerror}; the results before are in it") from error
+            raise DataError(f"cannot write {self.path}: {error.strerror}; earlier results are saved") from error
         self.results[key] = result
 
     def close(self) -> None:
@@ -61,7 +61,7 @@ class Journal:
         os.fsync(self._file.fileno())
 
     def _read(self, heading: str) -> int:
-        """Take the results that are there; how many bytes of the file are whole lines of this sweep."""
+        """Read the results; returns how many bytes of the file are complete lines of this sweep."""
         data = self.path.read_bytes() if self.path.exists() else b""
         whole = 0
         for number, line in enumerate(data.splitlines(keepends=True)):
@@ -76,7 +76,7 @@ class Journal:
                 except (ValueError, KeyError, TypeError, RecursionError) as error:
                     raise DataError(f"{self.path}, line {number + 1}, is no result; remove the line") from error
             whole += len(line)
-        # a first line that is not whole: of a sweep that was cut at once, or of something else
+        # an incomplete first line: of this sweep, interrupted at once, or of another file
         if data and not whole and not heading.startswith(data.decode("utf-8", "replace")):
             raise UsageError(f"{self.path} is no file of results; name another one")
         return whole

@@ -9,12 +9,12 @@ from pneumo_ros.errors import PneumoError
 from pneumo_ros.sweep.executors import Pool
 from pneumo_ros.sweep.journal import Journal
 
-TRIES = 3  # deaths of a worker that had nothing else to do, before the work counts as what killed it
+TRIES = 3  # deaths of a worker with only this work, before the work is given up
 _LOST = ("KilledWorker", "CommClosedError", "FutureCancelledError")  # of Dask, which need not be installed
 
 
 class Done(NamedTuple):
-    """Of one key: the result, or the words of the PneumoError that came instead (then `result` is None)."""
+    """Result of one key, or the message of its PneumoError (then `result` is None)."""
 
     key: str
     result: Any
@@ -25,11 +25,11 @@ class Done(NamedTuple):
 def sweep(
     work: Callable[..., Any], jobs: Mapping[str, tuple[Any, ...]], pool: Pool, journal: Journal | None = None
 ) -> Iterator[Done]:
-    """`work(*jobs[key])` for every key, as they are done; those in the `journal` come first and are not done again.
+    """Results of `work(*jobs[key])` as they are done; those in the `journal` come first and are not repeated.
 
-    `work` is a function of a module, its result what JSON can hold. What a dying worker had in hand is done again; work
-    that brings down three workers in a row, alone, is given up with a problem. Other exceptions than PneumoError end
-    the sweep. Results do not depend on the executor; their order does.
+    `work` is a function of a module with a JSON-compatible result. Work of a worker that died is repeated; work that
+    kills three workers in a row, alone, is given up with a problem. Exceptions other than PneumoError end the sweep.
+    Results do not depend on the executor; their order does.
     """
     known = journal.results if journal else {}
     for key in jobs:
@@ -43,7 +43,7 @@ def sweep(
 
 
 class _Course:
-    """What is under way. After a death everything in hand is suspect, and tried again alone, one at a time."""
+    """Work in progress. After a death all work in progress is suspect, and repeated one at a time."""
 
     def __init__(self, work: Callable[..., Any], jobs: Mapping[str, tuple[Any, ...]], pool: Pool) -> None:
         self._work, self._jobs, self._pool = work, jobs, pool
@@ -74,7 +74,7 @@ class _Course:
                 yield from self._bury()
 
     def _submit(self) -> None:
-        """Keep the workers busy; a suspect is alone."""
+        """Keep the workers busy; a suspect runs alone."""
         try:
             if self._suspects:
                 if not self._under_way:
@@ -82,7 +82,7 @@ class _Course:
                 return
             while self._waiting and len(self._under_way) < 2 * self._pool.workers:
                 self._start(self._waiting.popleft())
-        except BrokenExecutor:  # it broke between two of them
+        except BrokenExecutor:  # it broke between two submissions
             self._pool.renew()
 
     def _start(self, key: str) -> None:
@@ -93,7 +93,7 @@ class _Course:
             raise
 
     def _bury(self) -> Iterator[tuple[str, Any, str]]:
-        """After a death: a fresh executor, and nothing in hand that nobody works on."""
+        """After a death: a new executor; all work in progress becomes suspect."""
         alone = len(self._suspects) == 1 and not self._under_way
         self._suspects.extend(self._under_way.values())
         self._under_way.clear()
@@ -103,7 +103,7 @@ class _Course:
             self._deaths[key] += 1
             if self._deaths[key] >= TRIES:
                 self._suspects.clear()
-                yield key, None, f"its worker died {TRIES} times, as for want of memory"
+                yield key, None, f"its worker died {TRIES} times, possibly for lack of memory"
 
 
 def _is_death(error: Exception) -> bool:

@@ -51,7 +51,7 @@ def _addition(one: Mapping[str, Any]) -> AdditionWords:
 
 
 def parameter(effect: str, key: str, one: Mapping[str, Any]) -> ParameterWords:
-    """A parameter of an effect from its JSON, with the decimals that its uncertainty leaves."""
+    """A parameter of an effect from its JSON, with as many decimals as its uncertainty allows."""
     std = math.inf if one["std"] is None else one["std"]
     least, most = (sign * math.inf if one.get(end) is None else one[end] for end, sign in (("least", -1), ("most", 1)))
     span = interval(one["value"], std, least, most)
@@ -66,7 +66,7 @@ def with_rivals(one: Mapping[str, Any]) -> str:
 
 
 def additions_table(added: Sequence[AdditionWords], error: str = "held-out error") -> Table:
-    """A row for each parameter of what was added; `error` says what the errors are."""
+    """A row for each parameter of what was added; `error` is the heading of the errors."""
     rows: list[tuple[str, ...]] = []
     for one in added:
         first: tuple[str, ...] = (one.effect, one.t, one.error)

@@ -1,4 +1,4 @@
-"""Every effect that was tried: what speaks for it, and why it was or was not added."""
+"""Every effect that was tried: its evidence, and why it was or was not added."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ class CandidateWords:
 
     @property
     def word(self) -> str:
-        """The state as people read it."""
+        """The state in words."""
         return STATES[self.state]
 
 
@@ -75,14 +75,14 @@ def _reasons(one: Mapping[str, Any], rivals: Sequence[str]) -> tuple[str, ...]:
 
 
 def _plain(objection: str) -> str:
-    """An objection with the equations named as people do."""
+    """An objection with readable names of equations."""
     for name in ("chamber_a", "chamber_b"):
         objection = objection.replace(name, equation_words(name))
     return objection
 
 
 def foremost(found: Sequence[CandidateWords]) -> tuple[CandidateWords, ...]:
-    """What was not added and is shown everywhere: all rivals, and the refused ones with the largest t."""
+    """Candidates that were not added but are shown everywhere: all rivals, and the refused ones with the largest t."""
     refused = [one for one in found if one.state == REFUSED]
     return (*(one for one in found if one.state == RIVAL), *refused[:SHOWN])
 

@@ -1,4 +1,4 @@
-"""A diagnosis in words, as data: everything that terminal, report and workbench say of it."""
+"""A diagnosis in words, as data: everything that terminal, report and workbench show."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from pneumo_ros.wording.table import Table
 
 @dataclass(frozen=True)
 class DiagnosisWords:
-    """What a diagnosis says, in the order in which it is read."""
+    """The words of a diagnosis, in the order in which they are read."""
 
     verdict: str  # as in the JSON
     badge: str  # the verdict in a word or two
@@ -35,7 +35,7 @@ class DiagnosisWords:
     horizon: float  # s, of the predicted windows
 
     def sentences(self) -> tuple[str, ...]:
-        """Every sentence and reason that each of the three has to show."""
+        """Every sentence and reason that terminal, report and workbench must each show."""
         reasons = (reason for one in foremost(self.candidates) for reason in one.reasons[:REASONS])
         every = (
             self.headline, *self.notes, *(one.rivals for one in self.added), *reasons, *self.remains, self.moved,
@@ -76,7 +76,7 @@ def badge(result: Mapping[str, Any]) -> str:
 
 
 def headline(result: Mapping[str, Any]) -> str:
-    """The verdict in a sentence, and before it that the search was interrupted."""
+    """The verdict in a sentence, after a note if the search was interrupted."""
     if not result["interrupted"]:
         return _verdict(result)
     rounds = result["rounds"]
@@ -100,7 +100,7 @@ def _verdict(result: Mapping[str, Any]) -> str:
 
 
 def _reasons(result: Mapping[str, Any]) -> list[str]:
-    """Why the verdict is an unknown effect: what an equation leaves, and which predictions fail."""
+    """Reasons for the verdict 'unknown effect': the residual of an equation, and predictions that fail."""
     left = result["unexplained"]
     found = [leaves(result)] if left and left["material"] else []
     return [*found, *([result["because"]] if result.get("because") else [])]
@@ -117,7 +117,7 @@ def _error(result: Mapping[str, Any]) -> str:
 
 
 def notes(result: Mapping[str, Any]) -> tuple[str, ...]:
-    """What fails after the refit alone, whether anything was added, and a measured force that comes too early."""
+    """Equations that fail after the refit alone, whether effects were added, and the delay of a measured force."""
     failing = [the(name) for name in result["failing"] if name in EQUATIONS]
     places = [the(name) for name in result["failing"] if name not in EQUATIONS]
     verb = "fails" if len(failing) == 1 else "fail"

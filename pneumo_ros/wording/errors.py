@@ -13,7 +13,7 @@ UNNAMED = "friction refitted at breakaways"  # a step that adds and removes no e
 
 @dataclass(frozen=True)
 class StepWords:
-    """One model on the way: its name, its error in noise floors, and the change from the step before."""
+    """One model of the course: its name, its error in noise floors, and the change from the step before."""
 
     name: str
     error: float

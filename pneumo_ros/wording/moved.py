@@ -1,4 +1,4 @@
-"""Every parameter of a refit, and those of the model itself that moved farther than what was known of them allows."""
+"""Every parameter of a refit, and those of the model itself that moved far beyond their priors."""
 
 import math
 from collections.abc import Mapping

@@ -38,7 +38,7 @@ def sentence(text: str) -> str:
 
 
 def resolved(value: float, std: float) -> str:
-    """A value with the decimals that its standard deviation leaves certain; ends of an interval get as many."""
+    """A value with as many decimals as its standard deviation allows; ends of an interval get as many."""
     if not (math.isfinite(std) and std > 0.0):
         return number(value)
     decimals = max(-math.floor(math.log10(std / 2.0)), 0)
@@ -48,7 +48,7 @@ def resolved(value: float, std: float) -> str:
 
 
 def interval(value: float, std: float, least: float = -math.inf, most: float = math.inf) -> str:
-    """The 95 % interval of a value within what is allowed, or that there is none."""
+    """The 95 % interval of a value within its allowed range, or 'not determined'."""
     if not math.isfinite(std):
         return "not determined"
     low, high = max(value - NORMAL * std, least), min(value + NORMAL * std, most)
@@ -56,7 +56,7 @@ def interval(value: float, std: float, least: float = -math.inf, most: float = m
 
 
 def change(before: float, after: float) -> str:
-    """What became of an error: '-93 %', '+4 %', '2.5 times as much', or 'no change' below one per cent."""
+    """The change of an error: '-93 %', '+4 %', '2.5 times as much', or 'no change' below one per cent."""
     ratio = after / before if before > 0.0 else math.nan
     if not math.isfinite(ratio):
         return ""

@@ -1,4 +1,4 @@
-"""What a diagnosis leaves unexplained: in which equation, against what, and whether the machine itself changed."""
+"""The unexplained residual of a diagnosis: its equation, the variable it follows, and changes of the machine."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -27,7 +27,7 @@ def remains(result: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def machine_changed(moved: Mapping[str, Any]) -> str:
-    """That other values of the model's own parameters explain a share of it; `moved` is part of `unexplained`."""
+    """The share that other values of the model's own parameters explain; `moved` is part of `unexplained`."""
     moves = [
         f"{name} {number(one['before'], 4)} -> {number(one['after'], 4)} {one['unit']}".rstrip()
         for name, one in moved["parameters"].items()
@@ -40,7 +40,7 @@ def machine_changed(moved: Mapping[str, Any]) -> str:
 
 
 def leaves(result: Mapping[str, Any]) -> str:
-    """Which equation leaves how much, as the end of a sentence."""
+    """The equation and its unexplained residual, as the end of a sentence."""
     left = result["unexplained"]
     ratio = result["equations"]["after"][left["equation"]]["ratio_to_noise"]
     size = f"{amount(left['residual_rms'], left['equation'])} rms"
@@ -48,7 +48,7 @@ def leaves(result: Mapping[str, Any]) -> str:
 
 
 def follows(left: Mapping[str, Any]) -> str:
-    """What the residual follows, and by how much; `left` is `unexplained` in the JSON."""
+    """The variable that the residual follows, and its share; `left` is `unexplained` in the JSON."""
     share, shape = left["explained_share"], left["shape"]
     if not shape or share is None or share < FOLLOWS:
         most = f"more than {percent(share)} of it" if shape and share else "any of it"
@@ -68,7 +68,7 @@ def _nothing(result: Mapping[str, Any]) -> tuple[str, ...]:
     ]
     over = f" Residual over noise: {', '.join(ratios)}." if ratios else ""
     yet = (
-        f"The predictions over {result['horizon_s']:g} s are still {times(error)} the noise off: they depend on the "
-        "moment at which the piston breaks away; see: pneumo compare"
+        f"The errors of predictions over {result['horizon_s']:g} s are still {times(error)} the noise: they depend on "
+        "the moment at which the piston breaks away; see: pneumo compare"
     )
     return f"Nothing significant remains unexplained in any equation.{over}", *([yet] if error > SIGNIFICANT else [])

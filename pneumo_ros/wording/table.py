@@ -1,4 +1,4 @@
-"""A table of texts, which terminal and page lay out each in its way."""
+"""A table of texts, which terminal and page lay out differently."""
 
 from dataclasses import dataclass
 

@@ -27,8 +27,8 @@ def main(args: Sequence[str] | None = None) -> int:
 
 
 def _nodes(effects_files: Sequence[str]) -> list[AxisNode]:
-    """Both nodes; each leaves alone what is the other's among the parameters that both are given."""
+    """Both nodes; both are given all parameters, and each ignores those of the other."""
     theirs = {setting.name for setting in controller_settings.SETTINGS} - controller_settings.OF_THE_MACHINE
     simulator = Simulator(effects_files, lambda name: name in theirs)
-    clock = simulator.simulated_clock  # a pause of the plant is no silence, and /clock would halve the speed
+    clock = simulator.simulated_clock  # it stops when the plant pauses; /clock would halve the speed
     return [simulator, Controller(lambda name: name in simulator.parameters, clock)]

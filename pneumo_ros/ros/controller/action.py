@@ -27,7 +27,7 @@ class Following:
     """The action server. A goal is refused by its result, which says why; a new goal replaces the one before."""
 
     def __init__(self, node: "Controller", action: Any) -> None:
-        """`action` is FollowJointTrajectory, or a type of the same fields."""
+        """`action` is FollowJointTrajectory, or a type with the same fields."""
         self._node, self._type = node, action
         self._server = ActionServer(
             node, action, "~/follow_joint_trajectory", self._execute, cancel_callback=lambda goal: CancelResponse.ACCEPT

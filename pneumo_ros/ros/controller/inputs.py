@@ -1,4 +1,4 @@
-"""The topics on which others say where the piston is to go."""
+"""The topics that set the target of the piston."""
 
 import time
 from collections.abc import Callable
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from pneumo_ros.ros.controller.node import Controller
 
 REFERENCE, TRAJECTORY, COMMANDS = "position/reference", "joint_trajectory", "joint_commands"
-QUIET = 5.0  # s between two complaints of one kind of stream
+QUIET = 5.0  # s between two warnings of one kind of stream
 
 
 class Inputs:
-    """Subscriptions of a controller. What is refused is counted, and said with the reason."""
+    """Subscriptions of a controller. Refused messages are counted, and logged with the reason."""
 
     def __init__(self, node: "Controller", joint: str) -> None:
-        """Move `joint`; other joints in the same messages are somebody else's."""
+        """Move `joint`; other joints in the same messages are ignored."""
         self._node, self._joint = node, joint
-        self.refused = ""  # what was refused last, and why
+        self.refused = ""  # the last refusal, with its reason
         self._complained: dict[str, float] = {}  # kind of input -> when the log last reported it [s]
         self._commands = readers.JointReader(joint, whole=True)
         node.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
@@ -37,7 +37,7 @@ class Inputs:
         node.create_subscription(FluidPressure, SUPPLY_PRESSURE, self._supply, SUBSCRIBE)
 
     def follow(self, message: JointTrajectory) -> tuple[Trajectory, float]:
-        """Begin a trajectory; it, and how much it was slowed. Raises UsageError where it is refused."""
+        """Start a trajectory; returns it and its slow-down factor. Raises UsageError if it is refused."""
         node = self._node
         stamp = nanoseconds(message.header.stamp)
         delay = (stamp - node.stamp_now()) * 1e-9 if stamp else 0.0
@@ -73,7 +73,7 @@ class Inputs:
         if guide.supply.lost and not before:
             self._node.get_logger().error(f"supply pressure lost, {guide.supply.pressure:.4g} Pa: sending 0 V")
         elif before and not guide.supply.lost:
-            self._node.get_logger().info("supply pressure is back; the piston stays until it is sent somewhere")
+            self._node.get_logger().info("supply pressure is back; the piston stays until a new target arrives")
 
     def _try(self, what: str, act: Callable[[], object]) -> None:
         try:
@@ -84,7 +84,7 @@ class Inputs:
             self._complain(what)
 
     def _complain(self, what: str) -> None:
-        """Streams would fill the log; a trajectory comes alone, and whoever sent it wants to know each time."""
+        """Log a refusal: every one of a trajectory, but of a stream, which would fill the log, only each QUIET s."""
         now = time.monotonic()
         if what == "trajectory" or now - self._complained.get(what, -QUIET) >= QUIET:
             self._complained[what] = now

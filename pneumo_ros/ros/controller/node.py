@@ -1,4 +1,4 @@
-"""The controller: one valve command per joint state; what is asked of it comes in by `inputs` and `services`."""
+"""The controller: one valve command per joint state; requests arrive through `inputs` and `services`."""
 
 import threading
 import time
@@ -37,11 +37,11 @@ from pneumo_ros.ros.parameters import Values
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 from pneumo_ros.ros.rivals import Rivals
 
-CHECK = 0.02  # s between looks for silence
+CHECK = 0.02  # s between checks for missing measurements
 
 
 class Controller(AxisNode):
-    """Follows what it is sent or a built-in reference; sends 0 V when measurements are missing, and at the end."""
+    """Follows received references or a built-in one; sends 0 V when measurements are missing, and at the end."""
 
     def __init__(
         self, tolerated: Callable[[str], bool] = lambda name: False, clock: Callable[[], int] | None = None
@@ -83,13 +83,13 @@ class Controller(AxisNode):
         self.create_timer(CHECK, self._watch, clock=self.steady_clock)
 
     def _simulated(self) -> int:
-        """While the plant pauses, this time does so, too: no silence."""
+        """Simulated time [ns]; it pauses with the plant, so that no measurement seems to be missing."""
         return int(self.get_clock().now().nanoseconds)
 
     # --- time -------------------------------------------------------------------------------------------------------
 
     def _since(self) -> int:
-        """Time [ns] since the last measurement, no more than the timeout: later it is a pause."""
+        """Time [ns] since the last measurement, at most the timeout."""
         if self._heard is None:
             return 0
         return min(max(self._clock_ns() - self._heard, 0), round(self.loop.timeout * 1e9))
@@ -143,7 +143,7 @@ class Controller(AxisNode):
         self.loop.press(chamber, readers.pressure(data))
 
     def _watch(self) -> None:
-        """0 V, again and again, while no measurement comes. A clock that was set back counts from there."""
+        """Send 0 V repeatedly while no measurement comes. After a clock was set back, time counts from there."""
         if self._heard is None:
             return
         self._heard = min(self._heard, self._clock_ns())
@@ -155,7 +155,7 @@ class Controller(AxisNode):
         self.send(0.0)
 
     def send(self, voltage: float) -> None:
-        """A valve command [V]; none after the last one."""
+        """Send a valve command [V]; none after `finish`."""
         with self._sending:
             if not self._finished:
                 self._publisher.publish(self._message.fill(0, voltage))
@@ -163,7 +163,7 @@ class Controller(AxisNode):
     # --- life -------------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Nothing to begin, but everything to answer in time. In lockstep there is no hurry."""
+        """Ask for real-time scheduling, which lockstep does not need."""
         if self._clock_ns is time.monotonic_ns:
             take_priority(self.parameters["real_time_priority"])
 

@@ -1,4 +1,4 @@
-"""Messages that ask for a motion, as what the guide takes."""
+"""Messages that ask for a motion, as waypoints for the guide."""
 
 from builtin_interfaces.msg import Duration, Time
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Services:
-    """The explicit commands of a controller; references are taken again after ~/resume."""
+    """The explicit commands of a controller; references are followed again after ~/resume."""
 
     def __init__(self, node: "Controller") -> None:
         """Offer them below the node's own name."""
@@ -25,7 +25,7 @@ class Services:
 
     def _stop(self) -> None:
         self._node.loop.guide.stop()
-        self._node.send(0.0)  # not only with the next measurement
+        self._node.send(0.0)  # at once, before the next measurement
 
     def _offer(self, name: str, act: Callable[[], None], done: str) -> None:
         def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -1,4 +1,4 @@
-"""The topic `setpoint`: what the controller wants right now, for plots and recordings."""
+"""The topic `setpoint`: the controller's present setpoint, for plots and recordings."""
 
 import math
 
@@ -17,7 +17,7 @@ class Setpoints:
     """Publishes position and velocity of setpoints, at most every 10 ms."""
 
     def __init__(self, node: Node, joint: str) -> None:
-        """Of `joint`."""
+        """Setpoints of `joint`."""
         self._publisher = node.create_publisher(JointState, SETPOINT, PUBLISH)
         self._message = messages.joint_state(joint, effort=False)
         self._told = -math.inf

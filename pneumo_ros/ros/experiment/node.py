@@ -30,18 +30,18 @@ from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
 from pneumo_ros.ros.rivals import Rivals
 
-CHECK = 0.1  # s between two looks after the plant, at most
-SIMULATED = 1_000_000_000  # ns between stamps and the wall's time that only another clock explains
+CHECK = 0.1  # s between two checks of the plant, at most
+SIMULATED = 1_000_000_000  # ns between stamps and wall time: more means another clock
 
 
 class InterruptedExperimentError(PneumoError):
-    """Somebody wanted the experiment to end."""
+    """The experiment was ended from outside."""
 
     exit_code = 130
 
 
 class Experiment(AxisNode):
-    """Answers every joint state with a voltage until all trials are done, or something is wrong; then 0 V."""
+    """Answers every joint state with a voltage until all trials are done or a fault occurs; then 0 V."""
 
     def __init__(self, effects_files: Iterable[str | Path] = ()) -> None:
         """Raises UsageError for a bad parameter or programme, DataError for a programme that cannot be read."""
@@ -71,7 +71,7 @@ class Experiment(AxisNode):
             self._plant.other_joints = self._reader.names(data)
             return
         stamp = sample.stamp or time.time_ns()
-        if stamp <= self._stamp:  # overtaken or repeated; a clock that was set back shows as silence
+        if stamp <= self._stamp:  # late or repeated; after a clock was set back, all are
             return
         self._stamp, self._heard = stamp, time.monotonic()
         volts, failure = 0.0, None
@@ -113,7 +113,7 @@ class Experiment(AxisNode):
     # --- watching -----------------------------------------------------------------------------------------------------
 
     def _check(self) -> None:
-        """Begin when the plant is complete; end when it falls silent."""
+        """Start when all topics of the plant are there; end when one stops."""
         if self._over:
             return
         if not self._begun:
@@ -122,7 +122,7 @@ class Experiment(AxisNode):
         timeout = self.parameters["measurement_timeout"]
         silent = self._plant.silent(timeout, self._heard)
         if silent:
-            self._give_up(AbortedError(f"no {silent} for {timeout:g} s: what the plant does is not known any more"))
+            self._give_up(AbortedError(f"no {silent} for {timeout:g} s: the state of the plant is unknown"))
         elif self.rivals.others:
             self._give_up(AbortedError(f"{self.rivals.others} has begun to send {COMMAND}, too"))
 
@@ -134,7 +134,7 @@ class Experiment(AxisNode):
         elif not missing:
             away = abs(self._stamp - time.time_ns()) > SIMULATED
             self._takes.simulated = away and self.count_publishers("/clock") > 0
-            if not self._takes.simulated:  # beside nodes that have it, commands would come late
+            if not self._takes.simulated:  # without it, nodes that have it would delay the commands
                 take_priority(self.parameters[PRIORITY.name])
             self.folder.mkdir(parents=True, exist_ok=True)
             write_whole(self.folder / "programme.yaml", programme_text(self.programme))
@@ -181,7 +181,7 @@ class Experiment(AxisNode):
         self._events.report(said, "end", code=getattr(self.failure, "exit_code", 0), **content)
 
     def health(self) -> Health:
-        """Where in the programme it is."""
+        """Progress in the programme."""
         conductor = self._conductor
         values = {"trials_done": len(conductor.outcomes), "trials": len(self.programme.trials)}
         values |= {"recording": conductor.recording or "", "position_m": conductor.position}

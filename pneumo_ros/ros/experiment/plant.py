@@ -1,4 +1,4 @@
-"""The plant as its topics show it: what is missing of it, and what has fallen silent."""
+"""The plant as its topics show it: missing topics, and topics that have stopped."""
 
 import time
 from collections.abc import Mapping
@@ -12,26 +12,26 @@ PRESSURES = (PRESSURE_A, PRESSURE_B)
 
 
 class Plant:
-    """Answers questions about a plant before and while it is driven."""
+    """Checks a plant before and during an experiment."""
 
     def __init__(self, node: Node, heard: Mapping[str, float], commands: Publisher) -> None:
         """`heard`: when each of the contract's topics was last heard [s, monotonic]; `commands` drives the valve."""
-        self.other_joints: list[str] = []  # those of joint states without the joint that is wanted
+        self.other_joints: list[str] = []  # joints of joint states that lack the wanted joint
         self._node, self._heard, self._commands = node, heard, commands
 
     def missing(self, placed: bool) -> str:
-        """A sentence on what is not there, empty when the plant is complete; `placed`: positions have come."""
+        """A sentence on what is missing, empty when the plant is complete; `placed`: positions have arrived."""
         if not placed:
             return self._no_joint()
         silent = [self._node.resolve_topic_name(name) for name in PRESSURES if name not in self._heard]
         if silent:
             return f"no message on {' and '.join(silent)}: without both pressures the recordings would be of no use"
         if not self._commands.get_subscription_count():
-            return f"nobody listens on {self._commands.topic_name}: start the simulator, or the driver of the valve"
+            return f"no node subscribes to {self._commands.topic_name}: start the simulator, or the driver of the valve"
         return ""
 
     def silent(self, timeout: float, placed: float) -> str:
-        """The topic that said nothing new for `timeout` [s], empty if none; `placed`: last position [s, monotonic]."""
+        """The topic without a new message for `timeout` [s], empty if none; `placed`: last position [s, monotonic]."""
         now = time.monotonic()
         if now - placed > timeout:
             return f"new {JOINT_STATES}"

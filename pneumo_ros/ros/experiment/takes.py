@@ -17,22 +17,22 @@ from pneumo_ros.ros.message_classes import definition
 from pneumo_ros.ros.node import AxisNode
 
 LOOK = 0.01  # s between two looks into the queues
-HOLD = 0.2  # s a message waits, so that it is known where a trial begins and ends, and all are in the order of time
+HOLD = 0.2  # s a message waits, until the limits of the trial are known and messages can be sorted by time
 
 STAMPED = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE)
 
 
 class Takes:
-    """Hears the plant's topics; between `begin` and `end` they go into a bag, with the conductor's commands.
+    """Subscribes to the plant's topics; between `begin` and `end` they go into a bag, with the conductor's commands.
 
-    `heard` says for each topic when its last message was taken [s, monotonic]. Messages wait in queues, so that
-    no sender has to wait for a disk.
+    `heard`: when the last message of each topic was taken [s, monotonic]. Messages are queued, so that no sender
+    waits for a disk.
     """
 
     def __init__(self, node: AxisNode, folder: Path, failed: Callable[[PneumoError], None]) -> None:
-        """`failed` is called, in the thread, when a pressure is no number or the disk fails."""
+        """`failed` is called, in the thread, when a pressure is not finite or the disk fails."""
         self.folder, self.heard = folder, dict[str, float]()
-        self.simulated = False  # whether stamps are simulated time, which recordings then are timed by
+        self.simulated = False  # whether stamps are simulated time; recordings then use it
         self._failed = failed
         self._names = {str(node.resolve_topic_name(name)): name for name in (*STAMPED, COMMAND, DESCRIPTION)}
         self._topics = {topic: _topic(topic, name) for topic, name in self._names.items()}
@@ -116,7 +116,7 @@ class Takes:
         self._sort_in(self._intake.take())
 
     def _sort_in(self, taken: list[Taken]) -> None:
-        """Keep what arrived; a pressure that is no number is recorded, too, but ends the experiment."""
+        """Keep arrived messages; a pressure that is not finite is recorded, too, but ends the experiment."""
         for one in taken:
             name = self._names[one.topic]
             self.heard[name] = time.monotonic()
@@ -124,7 +124,7 @@ class Takes:
                 self._description = [Entry(0, 0, one.received, one.topic, one.payload)]
                 continue
             if name != JOINT_STATES and not math.isfinite(pressure := readers.pressure(one.payload)):
-                self._failed(DataError(f"{one.topic} is {pressure}; look after the sensor"))
+                self._failed(DataError(f"{one.topic} is {pressure}; check the sensor"))
             stamp = readers.stamp_of(one.payload, contract.TYPES[name]) or one.received
             log_time = stamp if self.simulated else one.received
             self._held.append(Entry(stamp, log_time, one.received, one.topic, one.payload))

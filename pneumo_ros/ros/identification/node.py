@@ -1,4 +1,4 @@
-"""The identification: recordings in, a machine out, while its services keep answering."""
+"""The identification: makes a machine from recordings, while its services keep answering."""
 
 import json
 import time
@@ -52,7 +52,7 @@ class Identification(AxisNode):
     # --- recordings -----------------------------------------------------------------------------------------------
 
     def _look(self) -> None:
-        """See what has arrived; begin when it is wanted and calm."""
+        """Look for recordings; with `auto`, start when they have not changed for `quiet` s."""
         named = [Path(name).expanduser() for name in self.parameters["bags"] if name]
         folder = self.parameters["folder"]
         ready, waiting = self._arrivals.look(named, Path(folder).expanduser() if folder else None)
@@ -78,7 +78,7 @@ class Identification(AxisNode):
         )  # fmt: skip
 
     def _identify(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Begin now; the result comes on ~/result."""
+        """Start now; the result comes on ~/result."""
         response.success = False
         waiting = "; ".join(f"{path.name} {why}" for path, why in self._waiting.items())
         if self._worker.busy:
@@ -121,7 +121,7 @@ class Identification(AxisNode):
         self._progress, self._stage = percent, text
 
     def _fail_softly(self, reason: str) -> None:
-        """The work brought nothing; the node goes on, for better recordings may come."""
+        """The work failed; the node goes on, because better recordings may come."""
         self._failure, self._stage = reason, "idle"
         self.get_logger().error(reason)
 
@@ -173,7 +173,7 @@ class Identification(AxisNode):
         return Health(values, warnings, [self._failure] if self._failure else [])
 
     def finish(self) -> None:
-        """Give up work under way."""
+        """Stop the running work."""
         self._worker.stop()
 
     def _describe(self) -> dict[str, object]:

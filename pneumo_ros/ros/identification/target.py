@@ -18,22 +18,22 @@ Done = Callable[[bool, str], None]
 
 
 class Target:
-    """Asks a node by name, first for the parameters it has; all answers come through callbacks of the executor."""
+    """Calls a node by name, first for a list of its parameters; answers come through callbacks of the executor."""
 
     def __init__(self, node: AxisNode) -> None:
-        """`node` asks."""
+        """`node` makes the calls."""
         self._node = node
         self._name = ""
         self._values: Mapping[str, float] = {}
         self._done: Done | None = None  # while there is something to do
         self._clients: dict[str, Any] = {}
-        self._question: tuple[str, Any, Callable[[Any], None]] | None = None  # service, request, what takes the answer
+        self._question: tuple[str, Any, Callable[[Any], None]] | None = None  # service, request, handler of the answer
         self._future: Future | None = None
         self._deadline = 0.0
         node.create_timer(LOOK, self._look, clock=node.steady_clock)
 
     def set(self, name: str, values: Mapping[str, float], done: Done) -> None:
-        """Set `values` on the node `name`; `done` learns whether it took them, and if not, why."""
+        """Set `values` on the node `name`; `done` receives success, and the reason of a failure."""
         if self._done is not None:
             self._end(False, "a newer result has come")
         self._drop()
@@ -47,7 +47,7 @@ class Target:
         self._deadline = time.monotonic() + WAIT
 
     def _look(self) -> None:
-        """Ask as soon as the service is there; take the answer as soon as it is."""
+        """Call the service when it exists; handle its answer when it arrives."""
         if self._done is None or self._question is None:
             self._drop()
             return

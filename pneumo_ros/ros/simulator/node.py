@@ -33,7 +33,7 @@ from pneumo_ros.ros.simulator.tuning import Tuning, initial_state
 
 
 class Simulator(AxisNode):
-    """Steps the machine in real time or in lockstep, takes `valve/command`, sends what the sensors see."""
+    """Steps the machine in real time or in lockstep, takes `valve/command`, sends sensor readings."""
 
     def __init__(
         self, effects_files: Iterable[str | Path] = (), tolerated: Callable[[str], bool] = lambda name: False
@@ -41,7 +41,7 @@ class Simulator(AxisNode):
         """Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, for a bad value, and where
         there is another plant.
         """
-        super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it makes that time itself
+        super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it is the source of that time
         self.rivals = Rivals(self, PLANT)
         files = tuple(effects_files)
         self.lock = threading.Lock()
@@ -59,7 +59,7 @@ class Simulator(AxisNode):
         self._service_calls = Services(self)
         self._commands = self.create_subscription(Float64, COMMAND, self._command, SUBSCRIBE, raw=True)
         factor = self.parameters["real_time_factor"]
-        self._period = 1e9 / self.simulation.rate / (factor or 1.0)  # ns of the wall
+        self._period = 1e9 / self.simulation.rate / (factor or 1.0)  # ns of wall time
         self.lockstep = self._make_lockstep() if factor == 0.0 else None
         self._ticker = None if self.lockstep else self._make_ticker()
         self._monitor = Monitor(self.simulation, self._ticker or self.lockstep)
@@ -125,14 +125,14 @@ class Simulator(AxisNode):
             self._send(now)
 
     def _tick(self, deadline: int) -> None:
-        """The sample that ends at `deadline` [ns, CLOCK_MONOTONIC] is over: find out what happened in it."""
+        """The sample that ends at `deadline` [ns, CLOCK_MONOTONIC] is over: simulate it."""
         begin, part = round(deadline - self._period), self._period / self.simulation.plant.parts
         with self.lock:
             if not self.paused and self._advance(begin, part):
                 self._send(deadline)
 
     def _advance(self, begin: int, part: float) -> bool:
-        """One sample, see `Simulation.advance`; False, and a pause, if the state left the finite numbers."""
+        """One sample, see `Simulation.advance`; False, and a pause, if the state is not finite."""
         try:
             self.simulation.advance(begin, part)
         except NumericalError as error:
@@ -141,7 +141,7 @@ class Simulator(AxisNode):
         return self.fault is None
 
     def _send(self, moment: int = 0) -> None:
-        """Send the present sample, stamped with simulated time or the wall's time of `moment` [ns, CLOCK_MONOTONIC]."""
+        """Send the present sample, stamped with simulated time or the wall time of `moment` [ns, CLOCK_MONOTONIC]."""
         stamp = self.simulation.clock if self._simulated_time else self._stamps.at(moment)
         self.outlet.send(self.simulation, stamp)
 

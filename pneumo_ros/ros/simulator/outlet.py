@@ -1,4 +1,4 @@
-"""Sends a sample: both pressures, then the joint state, so that whoever waits for the latter has all; then /clock."""
+"""Sends a sample: /clock, both pressures, then the joint state, with which a subscriber has the whole sample."""
 
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
@@ -14,7 +14,7 @@ class Outlet:
     """The publishers of the plant's sensors."""
 
     def __init__(self, node: Node, joint: str, clock: bool) -> None:
-        """Name of the joint; whether to send /clock."""
+        """`joint`: name of the joint; `clock`: whether to send /clock."""
         self.joint_states = node.create_publisher(JointState, JOINT_STATES, PUBLISH)
         self._pressure_a = node.create_publisher(FluidPressure, PRESSURE_A, PUBLISH)
         self._pressure_b = node.create_publisher(FluidPressure, PRESSURE_B, PUBLISH)

@@ -1,4 +1,4 @@
-"""Changes of a running machine through ROS parameters: checked as a whole, taken between two samples."""
+"""Changes of a running machine through ROS parameters: checked together, applied between two samples."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -21,7 +21,7 @@ _SENSORS = (
 
 
 class Tuning:
-    """Keeps a simulation as the parameters say. Another list of effects is compiled first, while the old one runs."""
+    """Applies parameters to a simulation. A new list of effects is compiled first, while the old one runs."""
 
     def __init__(
         self,
@@ -60,7 +60,7 @@ class Tuning:
             self.compiler.compile(self._wanted)
 
     def _redeclare(self, before: Model) -> None:
-        """Parameters of effects that left go, those of new ones come."""
+        """Undeclare parameters of removed effects, and declare those of new ones."""
         now = self._wanted.parameters
         self._parameters.undeclare([name for name in before.parameters if name not in now])
         new = [name for name in now if name not in before.parameters]
