@@ -46,6 +46,7 @@ def test_every_storage_equals_rosbags(tmp_path: Path, storage: str, compression:
     assert_same(read_topics(path), by_rosbags(path))
 
 
+@pytest.mark.check
 def test_many_chunks_of_one_layout(tmp_path: Path) -> None:
     path = write_rosbags(tmp_path / "bag", interleaved(CONTRACT, 1500, repeat=True), compression="storage")
     assert_same(read_topics(path), by_rosbags(path))

@@ -6,7 +6,7 @@ from typing import Any
 from rig import bags, case, effects
 
 LEAK = "cross_piston_leakage"
-SECONDS = 8.0
+SECONDS = 6.0
 STEP = 4e-5  # s, of the rig
 SEED = 5
 

@@ -4,6 +4,7 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from workbench.conftest import Served
 from workbench.tab import Tab
 
@@ -50,6 +51,7 @@ def test_a_reload_finds_the_job_again_and_cancel_ends_it(tab: Tab, served: Serve
     tab.see("#machine", "axis (as given)")
 
 
+@pytest.mark.check
 def test_two_tabs_do_not_disturb_each_other(tab: Tab, another: Open, served: Served) -> None:
     other = another()
     begun(tab, served)

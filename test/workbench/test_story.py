@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from workbench.leaking import LEAK
 from workbench.tab import Tab
 
@@ -19,7 +20,8 @@ def errors(tab: Tab) -> list[float]:
     return [float(found) for found in re.findall(r"([\d.]+) x", words)]
 
 
-def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> None:
+@pytest.mark.parametrize("typed_too", [False, pytest.param(True, marks=pytest.mark.check)])
+def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path, typed_too: bool) -> None:
     tab.press("Compare")
     tab.see("#failures-content table.heat", "holdout_steps")
     assert tab.page.locator("#failures-content table.heat").first.locator("tbody td a").count() == 2 * 6
@@ -38,8 +40,9 @@ def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path) -> No
     tab.wait_for_traces(lambda found: any(one["name"] == f"model 1 (+ {LEAK})" for one in found))
     machine = saved(tab, tmp_path / "saved.yaml")
     assert load_model(machine).effects[-1] == LEAK
-    (tmp_path / "typed").mkdir()
-    typed(tab, machine, tmp_path / "typed")
+    if typed_too:
+        (tmp_path / "typed").mkdir()
+        typed(tab, machine, tmp_path / "typed")
     undone(tab)
 
 
