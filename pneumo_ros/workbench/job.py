@@ -109,9 +109,10 @@ class Job:
             self._process = process = _start(line.arguments, self.folder)
         said: list[str] = []
         assert process.stderr is not None
-        for text in process.stderr:
-            said.append(text.strip())
-            self._hear(text.strip(), begin, part)
+        with process.stderr as lines:
+            for text in lines:
+                said.append(text.strip())
+                self._hear(text.strip(), begin, part)
         code = process.wait()
         with self._lock:
             if self._state == "running" and code not in (0, 1):
