@@ -85,7 +85,7 @@ def fitting(
             f"lanes do not fit: measured {given.shape}, rest {tail.shape}, parameters {q.shape}; needed are "
             f"(samples, {frame}), ({others},), each with or without lanes before, and (lanes, {width})"
         )
-    return given.reshape(-1, *given.shape[-2:]), np.array(np.broadcast_to(tail, (*lanes, others))), q
+    return given.reshape(-1, *given.shape[-2:]), np.array(np.broadcast_to(tail, (*lanes, others)), order="C"), q
 
 
 def follow_lanes(

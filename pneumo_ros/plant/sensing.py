@@ -34,6 +34,7 @@ def sense(
     q = np.broadcast_to(model.values, (len(states), len(model.parameters))) if parameters is None else parameters
     begin = np.asarray(start, dtype=float) + first * (sample_time / parts)
     out = np.empty((*states.shape[:2], len(model.composition.sensed)))
-    X, q, held = (np.ascontiguousarray(a, dtype=float) for a in (states, q, voltage))
+    X, held = (np.ascontiguousarray(a, dtype=float) for a in (states, voltage))
+    q = np.require(q, float, ["C", "W"])  # the kernel would be compiled again for an array that is read-only
     model.kernel.sense(X, q, held, first, begin, sample_time, parts, out)
     return out

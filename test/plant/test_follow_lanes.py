@@ -120,6 +120,14 @@ def test_arguments_are_left_as_they_are_and_may_be_read_only() -> None:
     assert len(AXIS.kernel.follow_lanes.signatures) == 1, "nothing has been compiled again for them"
 
 
+def test_shared_and_own_beginnings_need_one_compilation() -> None:
+    model = MACHINES["velocities of its own"]
+    q, rest = values(varied(model, 3)), model.state()[4:]
+    for given in (rest, np.tile(rest, (3, 1))):
+        model.follow_lanes(motion(), VOLTAGE, given, q, **HOW)
+    assert len(model.kernel.follow_lanes.signatures) == 1
+
+
 def test_one_sample_and_no_lanes_are_allowed() -> None:
     states, slopes = AXIS.follow_lanes(motion()[:1], [], [1e-6], values(varied(AXIS, 2)))
     assert states.tolist() == [[[*motion()[0], 1e-6]]] * 2

@@ -57,6 +57,14 @@ class Drifting(Effect):
 '''
 
 
+def test_own_and_common_parameters_need_one_compilation() -> None:
+    model = with_sensors(OFFSET)
+    states = np.tile(model.state(p_a=3e5, p_b=4e5), (1, 120, 1))
+    for q in (None, model.values[None]):
+        sense(model, states, q, VOLTAGE, np.zeros(1, dtype=np.int64))
+    assert len(model.kernel.sense.signatures) == 1
+
+
 def test_time_and_voltage_are_those_of_the_sample(tmp_path: Path) -> None:
     model = composed(tmp_path, DRIFTING, "drifting")
     read = sense(
