@@ -24,6 +24,7 @@ def _inside(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
 
 
+@pytest.mark.check
 def test_the_error_falls_to_the_noise_floor(folder: Path) -> None:
     options = ["--holdout", "runs/holdout_sweep", "--out", "more.yaml", "--json", "more.json"]
     line = [sys.executable, "-m", "pneumo_ros", "add", "viscous_friction", "runs", *options]
