@@ -9,10 +9,11 @@ def coefficient(knot: int) -> Parameter:
     return Parameter(0.1 if knot == 12 else 0.0, "1", meaning, low=-0.9, high=10.0, neutral=0.0)
 
 
-def bump(u: float) -> float:
-    """Six times the cubic B-spline of unit spacing, centred at 0."""
-    outer, inner = max(2.0 - abs(u), 0.0), max(1.0 - abs(u), 0.0)
-    return outer * outer * outer - 4.0 * inner * inner * inner
+def cubic(u: float, before: float, left: float, right: float, after: float) -> float:
+    """Six times the cubic spline at a share u in [0, 1] of the way from a knot to the next, from four coefficients."""
+    v = 1.0 - u
+    near, far = u * u * (3.0 * u - 6.0) + 4.0, v * v * (3.0 * v - 6.0) + 4.0
+    return before * v * v * v + left * near + right * far + after * u * u * u
 
 
 class PositionDependentFriction(Effect):
@@ -39,15 +40,55 @@ class PositionDependentFriction(Effect):
         knot_12, knot_13, knot_14, knot_15, knot_16, knot_17, knot_18, knot_19, knot_20, knot_21, knot_22, knot_23,
         knot_24,
     ):  # fmt: skip
-        x = 24.0 * min(max(y / stroke + 0.5, 0.0), 1.0)
-        profile = (
-            knot_00 * (bump(x + 1.0) + bump(x)) + knot_01 * bump(x - 1.0) + knot_02 * bump(x - 2.0)
-            + knot_03 * bump(x - 3.0) + knot_04 * bump(x - 4.0) + knot_05 * bump(x - 5.0) + knot_06 * bump(x - 6.0)
-            + knot_07 * bump(x - 7.0) + knot_08 * bump(x - 8.0) + knot_09 * bump(x - 9.0) + knot_10 * bump(x - 10.0)
-            + knot_11 * bump(x - 11.0) + knot_12 * bump(x - 12.0) + knot_13 * bump(x - 13.0) + knot_14 * bump(x - 14.0)
-            + knot_15 * bump(x - 15.0) + knot_16 * bump(x - 16.0) + knot_17 * bump(x - 17.0) + knot_18 * bump(x - 18.0)
-            + knot_19 * bump(x - 19.0) + knot_20 * bump(x - 20.0) + knot_21 * bump(x - 21.0) + knot_22 * bump(x - 22.0)
-            + knot_23 * bump(x - 23.0) + knot_24 * (bump(x - 24.0) + bump(x - 25.0))
-        )  # fmt: skip
-        friction_scale = max(1.0 + profile / 6.0, 0.0)
+        x = min(24.0 * min(max(y / stroke + 0.5, 0.0), 1.0), 23.999999999)
+        # The coefficients around x by the binary digits of the knot below it: selects, which vectorise over lanes.
+        sixteen = x >= 16.0
+        x = x - 16.0 if sixteen else x
+        a00 = knot_15 if sixteen else knot_00
+        a01 = knot_16 if sixteen else knot_00
+        a02 = knot_17 if sixteen else knot_01
+        a03 = knot_18 if sixteen else knot_02
+        a04 = knot_19 if sixteen else knot_03
+        a05 = knot_20 if sixteen else knot_04
+        a06 = knot_21 if sixteen else knot_05
+        a07 = knot_22 if sixteen else knot_06
+        a08 = knot_23 if sixteen else knot_07
+        a09 = knot_24 if sixteen else knot_08
+        a10 = knot_24 if sixteen else knot_09
+        eight = x >= 8.0
+        x = x - 8.0 if eight else x
+        b00 = a08 if eight else a00
+        b01 = a09 if eight else a01
+        b02 = a10 if eight else a02
+        b03 = knot_10 if eight else a03
+        b04 = knot_11 if eight else a04
+        b05 = knot_12 if eight else a05
+        b06 = knot_13 if eight else a06
+        b07 = knot_14 if eight else a07
+        b08 = knot_15 if eight else a08
+        b09 = knot_16 if eight else a09
+        b10 = knot_17 if eight else a10
+        four = x >= 4.0
+        x = x - 4.0 if four else x
+        c0 = b04 if four else b00
+        c1 = b05 if four else b01
+        c2 = b06 if four else b02
+        c3 = b07 if four else b03
+        c4 = b08 if four else b04
+        c5 = b09 if four else b05
+        c6 = b10 if four else b06
+        two = x >= 2.0
+        x = x - 2.0 if two else x
+        d0 = c2 if two else c0
+        d1 = c3 if two else c1
+        d2 = c4 if two else c2
+        d3 = c5 if two else c3
+        d4 = c6 if two else c4
+        one = x >= 1.0
+        x = x - 1.0 if one else x
+        e0 = d1 if one else d0
+        e1 = d2 if one else d1
+        e2 = d3 if one else d2
+        e3 = d4 if one else d3
+        friction_scale = max(1.0 + cubic(x, e0, e1, e2, e3) / 6.0, 0.0)
         return friction_scale
