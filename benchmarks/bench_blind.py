@@ -3,9 +3,10 @@
 Each seed is a machine worn by 5 %, with other excitation and noise. `single` hides one effect of the catalogue, in one
 of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides an effect
 that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy`: the same, but with a coloured force and
-a friction texture that no model has. Tables show rates with 95 % intervals (Wilson), and the targets beside them.
+a friction texture that no model has. `--excitation` names the kind of recordings (`rig.excitation.EXCITATIONS`), or
+`drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals (Wilson), and the targets.
 
-    python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--jobs 2]
+    python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--excitation usual] [--jobs 2]
 
 Each result is appended to a file as one line of JSON. Cases that it already holds for the same code are not run
 again, so that an interrupted run continues. `--seeds 0` prints the tables of the results there are; --code those of
@@ -26,12 +27,13 @@ from typing import Any
 
 import blind_figures as figures
 import blind_tables as tables
-from blind_case import KINDS, PARTNER, ROOT, code_hash, drawn_strength
+from blind_case import KINDS, PARTNER, ROOT, code_hash, drawn_excitation, drawn_strength
+from rig.excitation import EXCITATIONS
 
 from pneumo_ros.sweep import Pool, open_pool, sweep
 
-Job = tuple[str, int, float]  # kind, seed, strength
-Key = tuple[str, str, int, float]  # code and job
+Job = tuple[str, int, float, str]  # kind, seed, strength, excitation
+Key = tuple[str, str, int, float, str]  # code and job
 CASE = Path(__file__).with_name("blind_case.py")
 
 
@@ -42,6 +44,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--kind", choices=(*KINDS, "all"), default="all")
     parser.add_argument("--strength", type=float, help="share of full strength, for all; else drawn from 0.2 to 1")
+    parser.add_argument("--excitation", choices=(*EXCITATIONS, "drawn"), default="usual", help="what is recorded")
     parser.add_argument("--jobs", type=int, default=2, help="cases side by side (default 2)")
     parser.add_argument("--executor", metavar="NAME", help="such as dask=tcp://HOST:PORT, in place of --jobs")
     parser.add_argument("--json", type=Path, default=ROOT / ".cache" / "blind.jsonl", metavar="FILE", help="results")
@@ -53,9 +56,14 @@ def wanted(options: argparse.Namespace) -> list[Job]:
     """The requested cases, seed by seed, so that an interrupted run has some of every kind."""
     kinds = KINDS if options.kind == "all" else (options.kind,)
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    same = options.strength
+    same, excitation = options.strength, options.excitation
     return [
-        (kind, seed, drawn_strength(kind, seed) if same is None or kind in PARTNER.values() else same)
+        (
+            kind,
+            seed,
+            drawn_strength(kind, seed) if same is None or kind in PARTNER.values() else same,
+            drawn_excitation(kind, seed) if excitation == "drawn" else excitation,
+        )
         for seed in seeds
         for kind in kinds
     ]
@@ -69,7 +77,7 @@ def stored(path: Path) -> dict[Key, dict[str, Any]]:
             one = json.loads(line)
         except json.JSONDecodeError:
             continue
-        found[one["code"], one["kind"], one["seed"], one["strength"]] = one
+        found[one["code"], one["kind"], one["seed"], one["strength"], one.get("excitation", "usual")] = one
     return found
 
 
@@ -99,7 +107,7 @@ def run_all(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
             for count, done in enumerate(sweep(run_case, names, pool), 1):
                 job, (out, problem) = names[done.key], done.result
                 if problem:
-                    broken.append(f"{job[0]} {job[1]} {job[2]}: {problem.strip().splitlines()[-1]}")
+                    broken.append(f"{' '.join(map(str, job))}: {problem.strip().splitlines()[-1]}")
                 file.write("" if problem else out)
                 file.flush()
                 left = (time.monotonic() - begun) * (len(jobs) / count - 1.0) / 60.0
@@ -116,7 +124,8 @@ def summary(result: dict[str, Any]) -> str:
     """One case in a line."""
     hidden = " + ".join(hidden["shape"] for hidden in result["hidden"]) or "nothing"
     found = " + ".join(added["effect"] for added in result["added"]) or "nothing"
-    return f"{hidden} ({result['strength']:.2f}): {result['verdict']}, {found}; {result['wall']:.0f} s"
+    case = f"{hidden} ({result['strength']:.2f}, {result['excitation']})"
+    return f"{case}: {result['verdict']}, {found}; {result['wall']:.0f} s"
 
 
 def main() -> int:
@@ -138,8 +147,8 @@ def main() -> int:
 
 
 TABLES = (
-    tables.rates_table, tables.empty_table, tables.outside_table, tables.confusion_table, tables.failures,
-    figures.parameters_table, figures.held_out_table, figures.cost_table,
+    tables.rates_table, tables.excitations_table, tables.empty_table, tables.outside_table, tables.confusion_table,
+    tables.failures, figures.parameters_table, figures.held_out_table, figures.cost_table,
 )  # fmt: skip
 
 

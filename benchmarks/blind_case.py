@@ -1,9 +1,9 @@
 """One case of the blind benchmark: a machine of the independent rig is recorded and diagnosed.
 
-    python benchmarks/blind_case.py KIND SEED STRENGTH
+    python benchmarks/blind_case.py KIND SEED STRENGTH [EXCITATION]
 
 prints one line of JSON: the truth, the result, the cost. Each case has its own process, and so its own peak of
-memory.
+memory. EXCITATION is one of `rig.excitation.EXCITATIONS`; without it, the rig's usual recordings.
 """
 
 import hashlib
@@ -76,21 +76,32 @@ def build_case(kind: str, seed: int, strength: float) -> Any:
     return effects.build(seed, wishes, rough=kind.startswith("rough"), scale=strength)
 
 
-def recorded(case: Any) -> list[Any]:
-    """The runs of a case, written as bags and read again."""
+def drawn_excitation(kind: str, seed: int) -> str:
+    """A kind of excitation other than the usual one; the same for a machine and for its healthy partner."""
+    from rig.excitation import EXCITATIONS
+
+    others = [name for name in EXCITATIONS if name != "usual"]
+    salt = KINDS.index(PARTNER.get(kind, kind))
+    return str(np.random.default_rng([seed, salt, 8]).choice(others))
+
+
+def recorded(case: Any, excitation: str) -> tuple[list[Any], list[Any]]:
+    """The training and the held-out runs of a case, written as bags and read again."""
     from rig import bags
     from rig import case as rig_case
+    from rig.excitation import held_out
 
     from pneumo_ros.records import read_recording
     from pneumo_ros.runs.run import make_run
 
+    names = rig_case.runs_for(case, excitation)
+    train, held = list[Any](), list[Any]()
     with tempfile.TemporaryDirectory() as folder:
-        runs = []
-        for run in rig_case.make_runs(case, rig_case.runs_for(case), step=STEP):
+        for run in rig_case.make_runs(case, names, step=STEP):
             path = Path(folder) / run.name
             bags.write(path, run, rig_case.epoch(case.seed))
-            runs.append(make_run(read_recording(path)))
-    return runs
+            (held if held_out(run.name, names) else train).append(make_run(read_recording(path)))
+    return train, held
 
 
 def found(outcome: Any) -> dict[str, Any]:
@@ -114,17 +125,17 @@ def found(outcome: Any) -> dict[str, Any]:
     }
 
 
-def diagnosed(kind: str, seed: int, strength: float) -> dict[str, Any]:
+def diagnosed(kind: str, seed: int, strength: float, excitation: str = "usual") -> dict[str, Any]:
     """Record and diagnose one case."""
     from pneumo_ros.diagnose.diagnosis import diagnose
     from pneumo_ros.plant import load_model
 
     result: dict[str, Any] = {"code": code_hash(), "kind": kind, "seed": seed, "strength": strength}
+    result["excitation"] = excitation
     case = build_case(kind, seed, strength)
-    runs = recorded(case)
-    parts = [[run for run in runs if run.name.startswith("holdout") is held] for held in (False, True)]
+    train, held = recorded(case, excitation)
     wall, processor = time.perf_counter(), time.process_time()
-    outcome = diagnose(load_model("axis"), *parts)
+    outcome = diagnose(load_model("axis"), train, held)
     if outcome.interrupted:
         raise KeyboardInterrupt
     cost = {"wall": time.perf_counter() - wall, "processor": time.process_time() - processor}
@@ -135,10 +146,10 @@ def diagnosed(kind: str, seed: int, strength: float) -> dict[str, Any]:
         "true_parameters": true_parameters(case.truth),
         **found(outcome),
         **cost,
-        "recorded": sum(float(run.time[-1]) for run in runs),
+        "recorded": sum(float(run.time[-1]) for run in (*train, *held)),
         "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
     }
 
 
 if __name__ == "__main__":
-    print(json.dumps(diagnosed(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]))))
+    print(json.dumps(diagnosed(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]), *sys.argv[4:5])))

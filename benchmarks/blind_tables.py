@@ -55,8 +55,7 @@ def in_band(results: Iterable[Result], low: float, high: float) -> list[Result]:
 
 def rates_table(results: Sequence[Result]) -> str:
     """Right, missed and false by kind and by strength."""
-    columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first")
-    lines = [f"{'hidden effects':24s}" + "".join(f"{name:>22s}" for name in columns)]
+    lines = [_head("hidden effects")]
     for kind, target in HIDING.items():
         some = of_kind(results, kind)
         if not some:
@@ -66,6 +65,21 @@ def rates_table(results: Sequence[Result]) -> str:
             if band := in_band(some, low, high):
                 lines.append(_rates(f"  strength {low:g}-{high:g}", band))
     return "\n".join(lines)
+
+
+def excitations_table(results: Sequence[Result]) -> str:
+    """The same by kind of excitation, where there is more than one."""
+    by_kind: dict[str, list[Result]] = defaultdict(list)
+    for result in of_kind(results, *HIDING):
+        by_kind[result["excitation"]].append(result)
+    if len(by_kind) < 2:
+        return ""
+    return "\n".join([_head("by excitation"), *(_rates(f"  {kind}", by_kind[kind]) for kind in sorted(by_kind))])
+
+
+def _head(title: str) -> str:
+    columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first")
+    return f"{title:24s}" + "".join(f"{name:>22s}" for name in columns)
 
 
 def _rates(name: str, results: Sequence[Result]) -> str:
@@ -151,8 +165,11 @@ def failures(results: Sequence[Result]) -> str:
             continue
         found = [f"{a['effect']}{[*a['group']] if a['group'] else ''}" for a in result["added"]]
         hidden = " + ".join(f"{h['shape']}={h['size']:.3g}" for h in result["hidden"]) or "nothing"
+        words = " ".join(map(str, (result[key] for key in ("kind", "seed", "strength", "excitation"))))
         said = f"{result['verdict']}, {', '.join(found) or 'nothing added'}"
-        lines.append(f"  {hidden}: {said}   [{result['kind']} {result['seed']} {result['strength']:g}]")
+        lines.append(f"  {hidden}: {said}   [{words}]")
     if len(lines) > 1:
-        lines.append("  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH, the words in brackets")
+        lines.append(
+            "  repeat one by: python benchmarks/blind_case.py KIND SEED STRENGTH EXCITATION, the words in brackets"
+        )
     return "\n".join(lines)

@@ -26,3 +26,14 @@ def test_results_of_blind_cases_belong_to_all_the_code_that_a_diagnosis_runs(mon
     import blind_case
 
     assert set(blind_case.JUDGED) == rooms_below("diagnose")
+
+
+def test_a_machine_and_its_healthy_partner_are_recorded_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Held-out errors of the two are compared, which says something only for the same kind of excitation."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import blind_case
+
+    for seed in range(20):
+        for kind, partner in blind_case.PARTNER.items():
+            assert blind_case.drawn_excitation(kind, seed) == blind_case.drawn_excitation(partner, seed)
+    assert len({blind_case.drawn_excitation("single", seed) for seed in range(60)}) == 7  # all but the usual one

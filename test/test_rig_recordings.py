@@ -190,6 +190,29 @@ def test_ends_are_recorded_where_a_machine_differs_there():
     assert "train_ends" not in case.runs_for(effects.build(1))
 
 
+@pytest.mark.parametrize("kind", excitation.EXCITATIONS)
+def test_every_kind_of_excitation_has_runs_to_fit_and_runs_held_out(kind):
+    names = excitation.EXCITATIONS[kind]
+    held = [name for name in names if excitation.held_out(name, names)]
+    plans = [excitation.programme(name, excitation.run_rng(1, name)) for name in names]
+    seconds = [len(plan.voltage) * 1e-3 for plan in plans]
+    assert len(set(names)) == len(names)
+    assert len({plan.voltage.tobytes() + plan.wanted.tobytes() for plan in plans}) == len(names)  # no run twice
+    assert 0.15 < sum(s for name, s in zip(names, seconds, strict=True) if name in held) / sum(seconds) < 0.45
+    assert 90.0 < sum(seconds) < 450.0
+
+
+def test_moves_follow_smooth_ramps_with_pauses_inside_the_stroke():
+    built = effects.build(5)
+    run = case.make_run(built, "train_moves", step=4e-5)
+    wanted = excitation.programme("train_moves", excitation.run_rng(5, "train_moves")).wanted
+    speed = np.abs(np.diff(wanted)) * 1000.0
+    assert 0.0 < speed.max() < 0.2 * np.pi / 2.0 + 1e-3  # of a raised cosine, beside its mean
+    assert np.mean(speed == 0.0) > 0.05
+    assert np.abs(run.truth[:, 0]).max() < 0.7
+    assert np.median(np.abs(run.truth[:, 0] - wanted)) < 0.05  # a plain loop: late while it moves
+
+
 @pytest.mark.parametrize(
     ("arguments", "answer"),
     [

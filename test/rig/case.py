@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import bags, loop
-from .excitation import RUNS, programme, run_rng
+from .excitation import EXCITATIONS, RUNS, programme, run_rng
 from .machine import SMOOTH, Machine, Roughness, rough_surface
 from .sensors import Run, position_noise, record
 
@@ -64,6 +64,7 @@ def write_case(case: Case, folder: Path, names: Sequence[str] = RUNS, truth: Pat
     truth.write_text(json.dumps(case.truth, indent=2) + "\n")
 
 
-def runs_for(case: Case) -> tuple[str, ...]:
-    """The usual runs, and runs to the ends of the stroke if the machine differs there."""
-    return (*RUNS, "train_ends", "holdout_ends") if case.machine.cushion < 1.0 else RUNS
+def runs_for(case: Case, excitation: str = "usual") -> tuple[str, ...]:
+    """The runs of a kind of excitation, and runs to the ends of the stroke if the machine differs there."""
+    names = EXCITATIONS[excitation]
+    return (*names, "train_ends", "holdout_ends") if case.machine.cushion < 1.0 else names

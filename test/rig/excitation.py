@@ -79,6 +79,22 @@ def creep(rng: Rng, seconds: float = 20.0) -> Programme:
     return Programme(np.zeros_like(time), start + np.cumsum(rate) * SAMPLE, start, _START_PRESSURE, _LIMIT)
 
 
+def moves(rng: Rng, seconds: float = 20.0) -> Programme:
+    """A position loop along smooth moves of 0.05 to 0.4 m at 0.03 to 0.2 m/s, with pauses, as under a controller."""
+    time, start = _time(seconds), rng.uniform(-0.25, 0.25)
+    wanted, k, here = np.full_like(time, start), 0, start
+    while k < len(time):
+        k += round(rng.uniform(0.1, 0.8) / SAMPLE)  # a pause
+        to = float(np.clip(here + rng.choice([-1.0, 1.0]) * rng.uniform(0.05, 0.4), -0.5, 0.5))
+        samples = round(max(abs(to - here) / rng.uniform(0.03, 0.2), 0.2) / SAMPLE)
+        way = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, samples))
+        part = wanted[k : k + samples]
+        part[:] = here + (to - here) * way[: len(part)]
+        wanted[k + samples :] = to
+        k, here = k + samples, to
+    return Programme(np.zeros_like(time), wanted, start, _START_PRESSURE, _LIMIT)
+
+
 def ends(rng: Rng, seconds: float = 48.0) -> Programme:
     """From end to end at 1.5 to 4 V, held against the end for a while."""
     time, change, level = _time(seconds), 0.0, rng.choice([-1.0, 1.0])
@@ -98,6 +114,9 @@ _DRAWN: dict[str, Callable[[Rng], Programme]] = {
     "holdout_steps": steps,
     "holdout_sweep": lambda rng: sweep(rng, 15.0),
     "holdout_slow": lambda rng: slow(rng, 15.0),
+    "train_moves": moves,
+    "holdout_moves": moves,
+    "holdout_creep": creep,
     "train_ends": ends,
     "holdout_ends": ends,
 }
@@ -113,8 +132,38 @@ _CONSTANT = {constant_name(sign * volts): sign * volts for volts in STAIRCASE fo
 ALL_RUNS = (*_CONSTANT, *_DRAWN)
 RUNS = (
     *(constant_name(sign * volts) for volts in (0.83, 1.1, 7.0) for sign in (1.0, -1.0)),
-    *(name for name in _DRAWN if "ends" not in name),
+    *("train_steps", "train_sweep", "train_slow", "train_creep", "holdout_steps", "holdout_sweep", "holdout_slow"),
 )
+
+
+def _several(*given: str) -> tuple[str, ...]:
+    """`steps4` is train_steps, train_steps2, ..., holdout_steps and holdout_steps2: a third is held out."""
+    found = []
+    for text in given:
+        kind, count = text[:-1], int(text[-1])
+        found += [f"train_{kind}{k or ''}" for k in (0, *range(2, count + 1))]
+        found += [f"holdout_{kind}{k or ''}" for k in (0, *range(2, count // 2 + 1))]
+    return tuple(found)
+
+
+EXCITATIONS = {  # kind of recordings -> their runs
+    "usual": RUNS,
+    "campaign": (*_CONSTANT, *RUNS[6:]),
+    "constants": tuple(_CONSTANT),
+    "steps": _several("steps5"),
+    "sines": _several("sweep3", "slow3"),
+    "moves": _several("moves5"),
+    "creeps": _several("creep5"),
+    "mixture": ("constant_p0880", "constant_m1500", *_several("steps1", "moves2", "slow1")),
+}
+_HELD_CONSTANTS = (0.83, 1.5)  # V, held out where nothing but constant voltages is recorded
+
+
+def held_out(name: str, names: tuple[str, ...]) -> bool:
+    """Whether a run of a recording is held out."""
+    if any(other.startswith("holdout") for other in names):
+        return name.startswith("holdout")
+    return abs(_CONSTANT[name]) in _HELD_CONSTANTS
 
 
 def run_rng(seed: int, name: str) -> Rng:
@@ -126,6 +175,7 @@ def programme(name: str, rng: Rng) -> Programme:
     """The run of that name, drawn from `rng`; KeyError with the known names if there is none."""
     if name in _CONSTANT:
         return constant(_CONSTANT[name])
+    name = name.rstrip("0123456789")  # train_steps2 differs from train_steps by its random numbers alone
     if name not in _DRAWN:
         raise KeyError(f"no run is called {name!r}; known: {', '.join(ALL_RUNS)}")
     return _DRAWN[name](rng)
