@@ -27,6 +27,10 @@ class NumericalError(PneumoError):
     exit_code = 4
 
 
+class OutOfTimeError(KeyboardInterrupt):
+    """A deadline has passed: like Ctrl-C, it ends work that returns what it has by then."""
+
+
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel = 2  # the content of a file may be long and deeply nested
 

@@ -33,6 +33,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
         "model": outcome.model.name,
         "verdict": outcome.verdict,
         "interrupted": outcome.interrupted,
+        "deadline": outcome.deadline,
         "because": outcome.because,
         "failing": list(outcome.failing),
         "added": [_added(one, outcome.model) for one in outcome.added],

@@ -17,8 +17,8 @@ SHOWING = {
 
 
 def suggested(outcome: "Outcome", machine: str, console: Console) -> str:
-    """A sentence, "" where there is nothing to distinguish or after an interrupt; `machine` is what --model takes."""
-    if outcome.interrupted or outcome.model.force_driven:
+    """A sentence, "" where there is nothing to distinguish or no time left; `machine` is what --model takes."""
+    if outcome.interrupted or outcome.deadline or outcome.model.force_driven:
         return ""
     for added in outcome.added:
         if added.indistinguishable_from:

@@ -80,6 +80,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         waterfall=tuple(waterfall),
         unexplained=unexplained,
         interrupted=found.interrupted,
+        deadline=found.deadline,
         train=tuple(run.name for run in search.train.runs),
         held=tuple(run.name for run in held),
         limits=tuple(dict.fromkeys(search.fitter.limits)),

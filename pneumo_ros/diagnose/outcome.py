@@ -86,6 +86,7 @@ class Outcome:
     unexplained: Unexplained | None
     because: str = ""  # failing predictions of held-out runs, if they make the verdict `unknown_effect`
     interrupted: bool = False
+    deadline: bool = False  # whether the search ended because its time was over
     train: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()  # a sentence for every loop of the search that ended at its bound

@@ -1,6 +1,7 @@
 """The search for what a model lacks: refit, rank, try, add, repeat; then remove what does not improve predictions."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
@@ -25,6 +26,7 @@ from pneumo_ros.diagnose.steps import Found, Step, without
 from pneumo_ros.diagnose.strain import followed
 from pneumo_ros.diagnose.timing import lateness, later
 from pneumo_ros.diagnose.verdict import rises
+from pneumo_ros.errors import OutOfTimeError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
@@ -66,45 +68,51 @@ class Search:
         self.ranking = lru_cache(1)(self._rank)
         self.first: dict[str, float] = {}  # misfit of the refitted model beyond noise, by equation
 
-    def run(self) -> Found:
-        """Add effects one after another while they pass every test."""
-        self.progress(0.05, "refitting the model as given")
-        base = self.polish(self.fitter.refit(self.start))
-        model, steps = base, list[Step]()
-        before, vanished = self.predicted(base), dict[str, str]()
+    def run(self, until: AbstractContextManager[None] | None = None) -> Found:
+        """Add effects one after another while they pass every test; what was found by then if interrupted.
+
+        `until` may interrupt the search by OutOfTimeError.
+        """
+        base = model = self.start
+        steps, vanished = list[Step](), dict[str, str]()
         refused = vanished  # with this model: another model may need them
-        least = before  # of all models so far: a correction of an added law is no effect
         try:
-            for _ in range(ROUNDS):
-                k = len(model.effects) - len(base.effects)
-                self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
-                step = self.round(model, refused)
-                if step.added is None or k == MOST_EFFECTS:
-                    steps.append(replace(step, added=None))
-                    break
-                self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                new, gone = self.extended(model, step.added)
-                after = self.predicted(new)
-                if step.added.name in gone or not convinces(step.added, before, after):
-                    refused = refused | {step.added.name: UNHELPFUL}
-                    continue
-                vanished = vanished | dict.fromkeys(gone, VANISHED)
-                refused = vanished
-                steps = [without(s, gone, VANISHED) for s in (*steps, step)]
-                model, before = new, after
-                least = {name: min(least[name], error) for name, error in after.items()}
-            else:
-                self.fitter.limits.append(f"the search ended after {ROUNDS} rounds with candidates left to try")
-                steps.append(replace(self.round(model, refused), added=None))
-            self.progress(0.85, "judging breakaways and reversals")
-            new, last = self.slip_round(model)
-            if last is not None and last.added is not None and pays(least, self.predicted(new)):
-                steps[-1:] = [last, replace(steps[-1], model=new)]
-                model = new
-            return self.kept(self.settled(base), self.settled(model), steps)
-        except KeyboardInterrupt:
+            with until or nullcontext():
+                self.progress(0.05, "refitting the model as given")
+                base = model = self.polish(self.fitter.refit(self.start))
+                before = self.predicted(base)
+                least = before  # of all models so far: a correction of an added law is no effect
+                for _ in range(ROUNDS):
+                    k = len(model.effects) - len(base.effects)
+                    self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
+                    step = self.round(model, refused)
+                    if step.added is None or k == MOST_EFFECTS:
+                        steps.append(replace(step, added=None))
+                        break
+                    self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
+                    new, gone = self.extended(model, step.added)
+                    after = self.predicted(new)
+                    if step.added.name in gone or not convinces(step.added, before, after):
+                        refused = refused | {step.added.name: UNHELPFUL}
+                        continue
+                    vanished = vanished | dict.fromkeys(gone, VANISHED)
+                    refused = vanished
+                    steps = [without(s, gone, VANISHED) for s in (*steps, step)]
+                    model, before = new, after
+                    least = {name: min(least[name], error) for name, error in after.items()}
+                else:
+                    self.fitter.limits.append(f"the search ended after {ROUNDS} rounds with candidates left to try")
+                    steps.append(replace(self.round(model, refused), added=None))
+                self.progress(0.85, "judging breakaways and reversals")
+                new, last = self.slip_round(model)
+                if last is not None and last.added is not None and pays(least, self.predicted(new)):
+                    steps[-1:] = [last, replace(steps[-1], model=new)]
+                    model = new
+                return self.kept(self.settled(base), self.settled(model), steps)
+        except KeyboardInterrupt as stop:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
-            return Found(base, model, tuple(steps), interrupted=True)
+            late = isinstance(stop, OutOfTimeError)
+            return Found(base, model, tuple(steps), interrupted=not late, deadline=late)
 
     def kept(self, base: Model, model: Model, steps: Sequence[Step]) -> Found:
         """The result, without the first addition with which predictions get worse and all later ones.

@@ -36,3 +36,4 @@ class Found:
     model: Model
     steps: tuple[Step, ...]
     interrupted: bool = False
+    deadline: bool = False  # whether the search ended because its time was over

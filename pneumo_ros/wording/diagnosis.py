@@ -76,14 +76,15 @@ def badge(result: Mapping[str, Any]) -> str:
 
 
 def headline(result: Mapping[str, Any]) -> str:
-    """The verdict in a sentence, after a note if the search was interrupted."""
-    if not result["interrupted"]:
+    """The verdict in a sentence, after a note if the search was interrupted or ran out of time."""
+    if not (result["interrupted"] or result["deadline"]):
         return _verdict(result)
     rounds = result["rounds"]
     done = f"after {counted(rounds, 'round')} of the search" if rounds else "before any effect was tried"
     none = f"No effect had been added to '{result['model']}'; {_error(result)}."
     found = _verdict(result) if result["added"] else none
-    return f"INTERRUPTED {done}; this is what had been found by then. {found}"
+    stopped = "OUT OF TIME" if result["deadline"] else "INTERRUPTED"
+    return f"{stopped} {done}; this is what had been found by then. {found}"
 
 
 def _verdict(result: Mapping[str, Any]) -> str:

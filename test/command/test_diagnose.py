@@ -69,6 +69,7 @@ def test_the_json_is_as_promised(done: Done) -> None:
     assert data["suggested_experiment"] == ""
     assert data["unexplained"] is None
     assert not data["interrupted"]
+    assert not data["deadline"]
     assert (data["train"], data["held_out"]) == (["steps", "sweep"], ["holdout_sweep"])
 
 
@@ -138,6 +139,25 @@ def test_a_copy_is_not_held_out(folder: Path, tmp_path: Path, capsys: pytest.Cap
     subprocess.run(["cp", "-r", str(folder / "runs" / "steps"), str(copy)], check=True)
     line = refused(capsys, str(folder / "runs" / "steps"), "--holdout", str(copy))
     assert "is a copy of steps, which is fitted" in line
+
+
+def test_a_deadline_ends_the_search_with_the_usual_exit_code(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    written = str(tmp_path / "j.json")
+    code = main(["diagnose", "runs", "--holdout", "runs/holdout_sweep", "--within", "1s", "--json", written])
+    data = json.loads(Path(written).read_text())
+    assert (data["deadline"], data["interrupted"], data["added"]) == (True, False, [])
+    assert code == (1 if data["verdict"] == "unknown_effect" else 0)
+    assert capsys.readouterr().out.startswith("OUT OF TIME before any effect was tried")
+    assert data["refit"]["parameters"]
+
+
+@pytest.mark.parametrize("given", ["0", "-1", "soon", "nan", "inf", "60m"])
+def test_what_is_no_time_is_refused(given: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["diagnose", "runs", "--holdout", "held", f"--within={given}"]) == 2
+    assert "such as 60 or 60s" in capsys.readouterr().err
 
 
 @pytest.mark.check

@@ -1,11 +1,14 @@
-"""Work that a first Ctrl-C does not stop."""
+"""Work that a first Ctrl-C does not stop, and work that has a deadline."""
 
+import math
 import os
 import signal
+import time
 
 import pytest
 
-from pneumo_ros.command.patience import finishing
+from pneumo_ros.command.patience import deadline, finishing
+from pneumo_ros.errors import OutOfTimeError
 
 
 def press() -> None:
@@ -27,3 +30,21 @@ def test_afterwards_an_interrupt_is_one_again() -> None:
         press()
     with pytest.raises(KeyboardInterrupt):
         press()
+
+
+@pytest.mark.parametrize("seconds", [0.1, 0.0, -3.0])
+def test_a_deadline_ends_work_and_is_gone_afterwards(seconds: float) -> None:
+    begun, before = time.monotonic(), signal.getsignal(signal.SIGALRM)
+    with pytest.raises(OutOfTimeError), deadline(seconds):
+        time.sleep(20.0)
+    assert time.monotonic() - begun < 10.0
+    assert signal.getsignal(signal.SIGALRM) is before
+
+
+@pytest.mark.parametrize("seconds", [math.inf, 1000.0])
+def test_work_that_is_done_in_time_is_not_disturbed(seconds: float) -> None:
+    before = signal.getsignal(signal.SIGALRM)
+    with deadline(seconds):
+        done = True
+    assert done
+    assert signal.getsignal(signal.SIGALRM) is before

@@ -6,17 +6,20 @@ error before and after, the parameters with their intervals, the effects that ex
 explains. If effects cannot be distinguished, it names the experiment that distinguishes them. BAG may be a folder of
 recordings; recordings named by --holdout are not fitted.
 
-Ctrl-C ends the search: what was found by then is printed and written, with exit code 130. Exit code 1 says that
-something is missing that no known effect explains.
+Ctrl-C ends the search: what was found by then is printed and written, with exit code 130. --within ends it in time to
+print the best answer by then, with the usual exit code. Exit code 1 says that something is missing that no known effect
+explains.
 """
 
 import argparse
+import math
+import time
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
-from pneumo_ros.command.patience import finishing
+from pneumo_ros.command.patience import deadline, finishing
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.roles import add_holdout, read_roles, require_holdout, roles
 
@@ -24,17 +27,20 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from pneumo_ros.diagnose.outcome import Outcome
+    from pneumo_ros.diagnose.search import Search
     from pneumo_ros.plant import Model
     from pneumo_ros.runs.run import Run
     from pneumo_ros.shooting.refit import Estimate
 
 INTERRUPTED = 130
+EVALUATION = 12.0  # times one prediction of the held-out runs: what the result takes after the search
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --holdout, --out, how to read recordings, and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings to fit, or folders of recordings")
     add_holdout(parser, "recordings to judge by; never fitted")
+    parser.add_argument("--within", type=seconds, default=math.inf, metavar="S", help="print the best answer by then")
     add_machine_file(parser, "write the improved machine file")
     add_recordings(parser)
     add_model(parser)
@@ -44,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """Read, diagnose, print, write."""
+    end = time.monotonic() + options.within
     from pneumo_ros.command.diagnosis_json import diagnosis_dict
     from pneumo_ros.command.diagnosis_text import text
     from pneumo_ros.command.suggesting import suggested
@@ -57,7 +64,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     for name in untried(model):
         console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
-    outcome, estimates = diagnosed(model, train, held, console)
+    outcome, estimates = diagnosed(model, train, held, console, end)
     experiment = suggested(outcome, options.out or options.model, console)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
@@ -72,6 +79,17 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 1 if outcome.verdict == "unknown_effect" else 0
 
 
+def seconds(text: str) -> float:
+    """A time as typed, as 60 or 60s [s]."""
+    try:
+        value = float(text.removesuffix("s"))
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; give seconds above 0, such as 60 or 60s")
+    return value
+
+
 def untried(model: "Model") -> list[str]:
     """Effects of --effects without a parameter that has a neutral value: they cannot be added gradually."""
     from pneumo_ros.diagnose.coordinates import coordinates
@@ -83,9 +101,12 @@ def untried(model: "Model") -> list[str]:
 
 
 def diagnosed(
-    model: "Model", train: "Sequence[Run]", held: "Sequence[Run]", console: Console
+    model: "Model", train: "Sequence[Run]", held: "Sequence[Run]", console: Console, end: float = math.inf
 ) -> "tuple[Outcome, dict[str, Estimate]]":
-    """The diagnosis, and what is known of every parameter after it; Ctrl-C ends the search but not its evaluation."""
+    """The diagnosis, and what is known of every parameter after it; Ctrl-C ends the search but not its evaluation.
+
+    `end`: when the result has to be there, on the monotonic clock [s].
+    """
     from pneumo_ros.diagnose.adding import estimates_along
     from pneumo_ros.diagnose.diagnosis import conclude
     from pneumo_ros.diagnose.search import Search
@@ -98,11 +119,21 @@ def diagnosed(
             console.note(f"Interrupted: {again}")
 
         search = Search(model, train, held, lambda share, doing: progress(0.8 * share, doing))
-        found = search.run()
+        found = search.run(deadline(search_time(search, end)))
         if found.interrupted:
             interrupted()
         with finishing(interrupted):
             return conclude(search, found, progress), estimates_along(search.fitter, found.model)
+
+
+def search_time(search: "Search", end: float) -> float:
+    """How long a search may take so that its result is evaluated by `end`, on the monotonic clock [s]."""
+    if end == math.inf:
+        return end
+    begun = time.monotonic()
+    search.predicted(search.start)  # a part of the evaluation, and the measure of the rest
+    now = time.monotonic()
+    return max(end - now - EVALUATION * (now - begun), 0.0)
 
 
 def _what(outcome: "Outcome") -> str:
