@@ -16,6 +16,7 @@ from pneumo_ros.diagnose.hypothesis import (
     log_likelihood,
     missing,
     solve,
+    solve_within,
     vectors,
     wald,
     weights,
@@ -28,6 +29,7 @@ STRAINED = (
     4.5  # log likelihood that base parameters lose by their priors: above it, the effects they replace are searched for
 )
 IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
+REWEIGHTED = 5  # least-squares solutions, each weighted by the residual of the previous one
 SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 
 
@@ -80,9 +82,13 @@ def _linear(
     ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
     offset = np.concatenate([base.offset, np.zeros(len(sizes))])
     after, x = base.residual, np.zeros(K.shape[1])
-    for _ in range(5):
+    low, high = _room(effect, u, sizes, p)
+    for _ in range(REWEIGHTED):
         scale = family_scales(base.evidence, after)
-        x, A, bread = solve(K, base.residual, weights(base.evidence, after, scale), ridge, offset)
+        w = weights(base.evidence, after, scale)
+        x, A, bread = solve(K, base.residual, w, ridge, offset)
+        if np.any((x < low) | (x > high)):  # else a negative mass would explain noise that it amplifies
+            x = solve_within(K, base.residual, w, ridge, offset, low, high)
         after = base.residual + K @ x
     w = weights(base.evidence, after, scale)
     cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
@@ -93,6 +99,16 @@ def _linear(
     relief = relief_of(base, x[:p])
     value = log_likelihood(base.evidence, after) - strain(x[:p] + base.offset)
     return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
+
+
+def _room(effect: tuple[Coordinate, ...], u: Array, sizes: list[int], own: int) -> tuple[Array, Array]:
+    """Least and largest step of `own` base parameters, which are free, and of the sizes, in the steps tried."""
+    low, high = np.full(own + len(sizes), -np.inf), np.full(own + len(sizes), np.inf)
+    for j, k in enumerate(sizes, own):
+        c = effect[k]
+        if not c.logarithmic:
+            low[j], high[j] = sorted(end / u[k] for end in c.ends)
+    return low, high
 
 
 def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
