@@ -119,7 +119,7 @@ def found(outcome: Any) -> dict[str, Any]:
             }
             for a in outcome.added
         ],
-        "ranking": [(r.effect, r.score, r.holdout_gain, r.objections) for r in outcome.ranking[:RANKED]],
+        "ranking": [(r.effect, r.score.nats, r.holdout_gain, r.objections) for r in outcome.ranking[:RANKED]],
         "course": outcome.waterfall,
         "unexplained": left and {"equation": left.equation, "against": left.against, "rms": left.rms},
     }

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pneumo_ros.diagnose.between import Moved
     from pneumo_ros.diagnose.candidate import Candidate
     from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained
+    from pneumo_ros.diagnose.score import Score
     from pneumo_ros.plant import Model
     from pneumo_ros.plant.effect import Parameter
     from pneumo_ros.shooting.refit import Estimate
@@ -61,6 +62,11 @@ def value_dict(value: float, std: float, known: "Parameter") -> dict[str, Any]:
     }  # fmt: skip
 
 
+def score_dict(score: "Score") -> dict[str, float]:
+    """Nats that all recordings gain, and the part of the held-out ones."""
+    return {"nats": score.nats, "heldout_nats": score.held}
+
+
 def equations_dict(comparison: "Comparison") -> dict[str, Any]:
     """The verdict on each equation, over all runs."""
     return {name: dict(vars(judged)) for name, judged in comparison.equations.items()}
@@ -75,6 +81,7 @@ def _added(one: "Addition", model: "Model") -> dict[str, Any]:
         "holdout_error_before": one.holdout_error_before,
         "holdout_error_after": one.holdout_error_after,
         "t": one.t,
+        "score": score_dict(one.score),
     }
 
 
@@ -87,9 +94,9 @@ def _candidate(one: "Ranked", outcome: "Outcome") -> dict[str, Any]:
     predicted = added[one.effect].holdout_error_after if one.effect in added else one.holdout_error
     return {
         "effect": one.effect,
-        "score": one.score,
+        "score": score_dict(one.score),
         "holdout_error": predicted,
-        "t": one.score,
+        "t": one.t,
         "holdout_gain": one.holdout_gain,
         "equation": one.equation,
         "size": one.size,
@@ -114,7 +121,7 @@ def _tried(one: "Ranked", outcome: "Outcome") -> "Candidate":
     """The candidate that a row of the ranking shows: that of the addition, else the last one with the row's t."""
     added = [step.added for step in outcome.steps if step.added and step.added.name == one.effect]
     tried = [c for step in outcome.steps for c in (*step.candidates, *step.rivals) if c.name == one.effect]
-    return [*tried, *(c for c in tried if c.hypothesis.t == one.score), *added][-1]
+    return [*tried, *(c for c in tried if c.score == one.score), *added][-1]
 
 
 def _size_interval(candidate: "Candidate") -> tuple[float, float]:

@@ -118,7 +118,9 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
         kind = [dotted, *(n for n, unit in sizes.items() if unit == sizes.get(dotted))]
         ruler = RULER * max(abs(model[n]) for n in kind)
         values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), ruler), parameter.unit)
-    return Addition(name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t)
+    return Addition(
+        name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t, step.added.score
+    )
 
 
 def _latest(steps: Sequence[Step]) -> list[Candidate]:
@@ -127,12 +129,12 @@ def _latest(steps: Sequence[Step]) -> list[Candidate]:
     seen = {c.name: c for step in steps for c in step.candidates}
     seen |= {c.name: c for step in steps for c in step.rivals}  # of the round in which they tied
     names = [c.name for c in added]
-    return [*added, *sorted((c for n, c in seen.items() if n not in names), key=lambda c: -c.hypothesis.t)]
+    return [*added, *sorted((c for n, c in seen.items() if n not in names), key=lambda c: -c.score.nats)]
 
 
 def _ranked(c: Candidate) -> Ranked:
     equation = max(c.gain, key=lambda name: c.gain[name])
-    return Ranked(c.name, c.hypothesis.t, c.gain[equation], equation, c.size, c.objections, None)
+    return Ranked(c.name, c.score, c.hypothesis.t, c.gain[equation], equation, c.size, c.objections, None)
 
 
 def remains(before: Comparison, after: Comparison) -> Unexplained | None:

@@ -33,10 +33,12 @@ class Evidence:
 
     Windows, their noise and which of them count do not depend on the variant and are made once. Arrays (residuals,):
     family (index into `names`), run and block index of each entry, its time [s], and the noise in the entry's unit.
-    `drive`: root mean square of the drive force on the piston [N].
+    `by_mass`: the share of its deviation that the moving mass amplifies. `drive`: root mean square of the drive force
+    on the piston [N].
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
+        self.mass = moving_mass(model)
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
 
     def _index(self, by_run: list["RunEvidence"]) -> None:
@@ -44,6 +46,8 @@ class Evidence:
         self.runs = tuple(part.run for part in by_run)
         families = [f for part in self.by_run for f in part.families]
         self.noise = np.concatenate([f.noise[f.usable] for f in families])
+        by_mass = [np.zeros(len(f.time)) if f.by_mass is None else f.by_mass for f in families]
+        self.by_mass = np.concatenate([m[f.usable] for m, f in zip(by_mass, families, strict=True)]) / self.noise
         counts = [int(f.usable.sum()) for f in families]
         self.names = tuple(dict.fromkeys(f.name for f in families))
         self.family = np.repeat([self.names.index(f.name) for f in families], counts)
@@ -54,6 +58,11 @@ class Evidence:
 
     def __len__(self) -> int:
         return len(self.noise)
+
+    def noise_of(self, model: Model) -> Array:
+        """Noise (residuals,) with the moving mass of `model`, which amplifies the noise of the position."""
+        grown = (moving_mass(model) / self.mass) ** 2
+        return np.asarray(self.noise * np.sqrt(np.maximum(1.0 + self.by_mass**2 * (grown - 1.0), 1e-12)))
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""
@@ -69,6 +78,11 @@ class Evidence:
             made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
         whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
+
+
+def moving_mass(model: Model) -> float:
+    """Mass that moves with the piston at once [kg]."""
+    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
 
 
 class RunEvidence:

@@ -1,6 +1,6 @@
 """The families of residuals that one run has: windows of an equation, and breakaways, with the noise of each."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ class Family:
     bump: Bump | None = field(repr=False, default=None)
     breakaways: tuple[Breakaway, ...] = ()
     slip_times: tuple[float, ...] = ()  # s, of each breakaway
+    by_mass: Array | None = field(repr=False, default=None)  # the part of the noise that the moving mass amplifies
 
     @property
     def window(self) -> Bump:
@@ -50,7 +51,8 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
     found, momentum = [], Momentum(model, run, states)
     for width in WINDOWS["momentum"]:
         bump = Bump.of(width, run.sample_time)
-        found.append(_family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump)))
+        family = _family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump))
+        found.append(replace(family, by_mass=momentum.noise_by_position(bump)))
     for chamber in "" if model.force_driven else "ab":
         equation = Chamber(model, chamber)
         rate, steep = claimed[:, equation.column], equation.steepness(run, states)

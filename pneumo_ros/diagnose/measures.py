@@ -1,12 +1,10 @@
 """The misfit of each equation with and without a candidate, and how certain the difference is."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.hypothesis import FLOOR, OVERLAP, family_scales, huber, robust_scale, usual
+from pneumo_ros.diagnose.hypothesis import FLOOR, robust_scale
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -22,11 +20,6 @@ NOISE = {"breakaway": 0.56}  # mean square of noise alone, where it is not 1: th
 def equation_of(name: str) -> str:
     """The equation of a family: momentum, chamber_a, chamber_b or breakaway."""
     return name.partition(" ")[0]
-
-
-def equation_helped(gain: dict[str, float]) -> str:
-    """The equation that gains most; "" if there is none."""
-    return max(gain, key=lambda name: gain[name], default="")
 
 
 def force(evidence: Evidence, before: Array, after: Array) -> float:
@@ -57,13 +50,6 @@ def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = N
     return {name: 1.0 - second[name] / first[name] for name in first}
 
 
-def usual_gains(evidence: Evidence, before: Array, after: Array) -> dict[str, float]:
-    """The same with outliers limited: one bad breakaway of twenty must not outweigh the others."""
-    each = [usual(np.abs(before[evidence.family == k])) for k in range(len(evidence.names))]
-    limit = WILD * np.array(each)[evidence.family]
-    return gains(evidence, np.clip(before, -limit, limit), np.clip(after, -limit, limit))
-
-
 def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
     """Largest reduction, over the equations, from `before` to `after`, as a share of the mean square beyond noise.
 
@@ -81,38 +67,8 @@ def acting(before: Array, after: Array) -> Rows:
     return np.asarray(np.abs(before - after) > ACTS)
 
 
-def excess(evidence: Evidence, residual: Array) -> dict[str, float]:
-    """By equation, the mean square of the residual beyond the noise's."""
-    return {n: max(value - NOISE.get(n, 1.0), 0.0) for n, value in mean_squares(evidence, residual).items()}
-
-
-def _surprise(evidence: Evidence, residual: Array) -> Array:
-    """Minus the log likelihood of each window, with the scales of the residual itself.
-
-    With another model's scales a larger moving mass would look bad at rest, as it amplifies position noise.
-    """
-    scale = family_scales(evidence, residual)[evidence.family]
-    return np.asarray(np.log(scale) + huber(residual / scale))
-
-
-def advantage(evidence: Evidence, worse: Array, better: Array) -> tuple[float, float]:
-    """Log likelihood that `better` gains on `worse`, and that gain over its scatter between blocks (Vuong 1989)."""
-    difference = OVERLAP**2 * (_surprise(evidence, worse) - _surprise(evidence, better))
-    return together(np.asarray(np.bincount(evidence.block, difference), dtype=np.float64))
-
-
 def together(saved: Array) -> tuple[float, float]:
     """Sum of the log likelihoods that parts of the data gain, each limited, and that sum over its scatter."""
     parts = np.clip(saved, -MOST_BLOCK, MOST_BLOCK)
     spread = float(np.sqrt(np.sum(parts**2)))
     return float(parts.sum()), float(parts.sum() / spread) if spread > 0.0 else 0.0
-
-
-def pooled_advantage(pairs: Sequence[tuple[Evidence, Array, Array]]) -> float:
-    """The gain over its scatter for several bodies of evidence together, each (evidence, worse, better)."""
-    total = spread = 0.0
-    for evidence, worse, better in pairs:
-        saved, z = advantage(evidence, worse, better)
-        total += saved
-        spread += (saved / z) ** 2 if z else 0.0
-    return total / np.sqrt(spread) if spread > 0.0 else 0.0

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.diagnose.between import Moved
+from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.steps import Step
 from pneumo_ros.plant import Model
 
@@ -34,6 +35,7 @@ class Addition:
     holdout_error_before: float
     holdout_error_after: float
     t: float
+    score: Score  # nats that the recordings gain with it
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class Ranked:
     """One row of the ranking of the round in which an effect was tried last."""
 
     effect: str
-    score: float  # t on the training runs
+    score: Score  # nats that the recordings gain with it
+    t: float  # on the training runs
     holdout_gain: float  # share of the mean square of the equation it helps most, on held-out runs
     equation: str  # that equation
     size: float  # in usual sizes of the effect

@@ -20,14 +20,24 @@ HORIZON = 1.0  # s
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 
 
-def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
-    """By signal, the usual error over noise in windows of 1 s: the geometric mean of their rms."""
+def window_logs(model: Model, runs: Sequence[Run]) -> dict[str, Array]:
+    """By signal, the logarithm of the error over noise (windows,) in every window of 1 s."""
     logs: dict[str, list[Array]] = {}
     for run in runs:
         noise = run.noise
         for name, error in predict(model, run, HORIZON).errors.items():
             logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
-    return {name: float(np.exp(np.mean(np.concatenate(parts)))) for name, parts in logs.items()}
+    return {name: np.concatenate(parts) for name, parts in logs.items()}
+
+
+def usual_errors(logs: Mapping[str, Array]) -> dict[str, float]:
+    """By signal, the usual error over noise: the geometric mean of the windows' rms."""
+    return {name: float(np.exp(np.mean(values))) for name, values in logs.items()}
+
+
+def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
+    """By signal, the usual error over noise in windows of 1 s."""
+    return usual_errors(window_logs(model, runs))
 
 
 def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:

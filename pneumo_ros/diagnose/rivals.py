@@ -5,30 +5,28 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import MATERIAL, T_LEAST, Candidate
+from pneumo_ros.diagnose.candidate import MARGIN, MATERIAL, Candidate
 from pneumo_ros.diagnose.hypothesis import BaseFit
-from pneumo_ros.diagnose.measures import pooled_advantage
 
 Array = NDArray[np.float64]
 
-ALIKE = 0.9  # of the best score: a candidate with less explains less, and is no rival
-TIED = 2.5  # deviations by which a rival must be worse to be distinguished
 SAME = 0.5  # least cosine between the changes that two rivals make; below, they are different effects
 
 
 def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that all runs together do not distinguish from the best one."""
+    """Candidates that all runs together do not distinguish from the best one: their scores are within the margin."""
     found = []
     for other in others:
-        if other.name == best.name or other.hypothesis.t < T_LEAST or other.size < MATERIAL:
+        if other.name == best.name or other.size < MATERIAL or best.name in _contained(base, other):
             continue
-        if other.score < ALIKE * best.score or best.name in _contained(base, other):
-            continue
-        if _likeness(held.residual - best.held, held.residual - other.held) < SAME:
-            continue
-        if _tied(base, held, best, other):
+        same = _likeness(held.residual - best.held, held.residual - other.held) >= SAME
+        if same and other.score.nats >= MARGIN and _tied(best, other):
             found.append(other)
     return found
+
+
+def _tied(best: Candidate, other: Candidate) -> bool:
+    return best.score.nats - other.score.nats < MARGIN
 
 
 def _likeness(one: Array, other: Array) -> float:
@@ -44,7 +42,7 @@ def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candida
     """
     for other in good[1:]:
         little = _between(held, good[0], other) < MATERIAL
-        if other.name in _contained(base, good[0]) and (little or _tied(base, held, good[0], other)):
+        if other.name in _contained(base, good[0]) and (little or _tied(good[0], other)):
             return other
     return good[0] if good else None
 
@@ -57,11 +55,3 @@ def _between(held: BaseFit, best: Candidate, other: Candidate) -> float:
 
 def _contained(base: BaseFit, candidate: Candidate) -> tuple[str, ...]:
     return base.model.library.find(candidate.name).contains
-
-
-def _tied(base: BaseFit, held: BaseFit, best: Candidate, other: Candidate) -> bool:
-    pairs = [
-        (base.evidence, other.hypothesis.residual, best.hypothesis.residual),
-        (held.evidence, other.held, best.held),
-    ]
-    return pooled_advantage(pairs) < TIED

@@ -13,10 +13,10 @@ from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
-from pneumo_ros.diagnose.judging import TEXTURE, judged, remaining, size_in, undetermined
-from pneumo_ros.diagnose.measures import excess, force
+from pneumo_ros.diagnose.judging import by_score, judged, size_in, undetermined
+from pneumo_ros.diagnose.measures import force
 from pneumo_ros.diagnose.polishing import polish
-from pneumo_ros.diagnose.prediction import harmless, no_worse, pays, windowed
+from pneumo_ros.diagnose.prediction import no_worse, pays, usual_errors, window_logs, windowed
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist
@@ -33,6 +33,7 @@ from pneumo_ros.runs.run import Run
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
+TEXTURE = 0.01  # of the drive force: a larger force that is unexplained acts at breakaways, too
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN_ANYWAY = 4  # candidates tried where none is promising, so that the objections can be shown
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
@@ -63,10 +64,13 @@ class Search:
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         # results are kept, as they are needed again
-        self.predicted = lru_cache(16)(lambda model: windowed(model, self.held.runs))
+        self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs))
         self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
         self.ranking = lru_cache(1)(self._rank)
-        self.first: dict[str, float] = {}  # misfit of the refitted model beyond noise, by equation
+
+    def predicted(self, model: Model) -> dict[str, float]:
+        """By signal, the usual error over noise with which `model` predicts the held-out runs."""
+        return usual_errors(self.logs(model))
 
     def run(self, until: AbstractContextManager[None] | None = None) -> Found:
         """Add effects one after another while they pass every test; what was found by then if interrupted.
@@ -80,8 +84,7 @@ class Search:
             with until or nullcontext():
                 self.progress(0.05, "refitting the model as given")
                 base = model = self.polish(self.fitter.refit(self.start))
-                before = self.predicted(base)
-                least = before  # of all models so far: a correction of an added law is no effect
+                least = self.predicted(base)  # of all models so far: a correction of an added law is no effect
                 for _ in range(ROUNDS):
                     k = len(model.effects) - len(base.effects)
                     self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
@@ -91,15 +94,14 @@ class Search:
                         break
                     self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                     new, gone = self.extended(model, step.added)
-                    after = self.predicted(new)
-                    if step.added.name in gone or not convinces(step.added, before, after):
+                    if step.added.name in gone or rises(self.logs(model), self.logs(new)):
                         refused = refused | {step.added.name: UNHELPFUL}
                         continue
                     vanished = vanished | dict.fromkeys(gone, VANISHED)
                     refused = vanished
                     steps = [without(s, gone, VANISHED) for s in (*steps, step)]
-                    model, before = new, after
-                    least = {name: min(least[name], error) for name, error in after.items()}
+                    model = new
+                    least = {name: min(least[name], error) for name, error in self.predicted(new).items()}
                 else:
                     self.fitter.limits.append(f"the search ended after {ROUNDS} rounds with candidates left to try")
                     steps.append(replace(self.round(model, refused), added=None))
@@ -119,12 +121,12 @@ class Search:
 
         An intermediate model is settled like the base and the final model before it is judged worse than them.
         """
-        steps, before = list(steps), self.predicted(base)
+        steps, before = list(steps), self.logs(base)
         for k in (k for k, step in enumerate(steps) if step.added is not None):
             final = not any(step.added for step in steps[k + 1 :])
-            if not final and rises(before, self.predicted(steps[k + 1].model)):
+            if not final and rises(before, self.logs(steps[k + 1].model)):
                 steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model))
-            after = self.predicted(model if final else steps[k + 1].model)
+            after = self.logs(model if final else steps[k + 1].model)
             if rises(before, after):
                 last = without(steps[k], [step.added.name for step in steps[k:] if step.added], UNHELPFUL)
                 return Found(base, steps[k].model if k else base, (*steps[:k], last))
@@ -200,10 +202,7 @@ class Search:
         held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
         hypotheses, screened = self.hypotheses(base)
         candidates = self.judged(base, held, nothing, hypotheses, screened)
-        now = excess(self.held, held.residual)
-        self.first = self.first or now
         quiet = force(self.held, held.residual, np.zeros(len(self.held))) <= TEXTURE * self.held.drive
-        candidates = [replace(t, rest=remaining(t, self.first, now), quiet=quiet) for t in candidates]
         return Ranking(base, held, candidates, screened, quiet)
 
     def hypotheses(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
@@ -228,18 +227,7 @@ class Search:
         candidates = judged(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
         good = [candidate.name for candidate in candidates if not candidate.objections]
         relieving = followed(self.fitter, base, screened, nothing.relief, good)
-        return candidates + judged(base, held, *relieving, nothing, first)
-
-
-def convinces(candidate: Candidate, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether held-out predictions allow an effect: they must not get worse with it, and have to get better.
-
-    They need not get better where the effect explains its equation: predictions over a second may depend only on
-    another missing effect. Nor need they where the data do not decide, if no signal is predicted worse.
-    """
-    if rises(before, after):
-        return False
-    return candidate.clear or pays(before, after) or (candidate.absorbed and harmless(before, after))
+        return by_score(candidates + judged(base, held, *relieving, nothing, first))
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:

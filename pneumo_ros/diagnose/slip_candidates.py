@@ -14,6 +14,7 @@ from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
 from pneumo_ros.diagnose.mechanics import moves
+from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
 from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.diagnose.steps import Step
@@ -224,6 +225,7 @@ def as_candidate(
     u = np.array([k.u(c.model[k.name]) for k in effect])
     every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
+    gained = [together(0.5 * samples * (one - two))[0] for one, two in ((base_train, c.train), (base_held, c.held))]
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
     enough = (
@@ -235,8 +237,16 @@ def as_candidate(
         enough = f"the equations along the motion contradict it (they lose {c.against:.3g} in log likelihood)"
     if not any(determined(k, c.model[k.name], c.std) for k in effect):
         enough = enough or "its size is not larger than its uncertainty"
-    z = deviations_better(base_held, c.held, samples)
     return Candidate(
-        h, np.empty(0), {"slip": gain}, z, magnitude(effect, u), True, share, first, 0.0,
-        float(np.quantile(base_train, q) - np.quantile(c.train, q)), refused=enough, std=c.std,
+        h, np.empty(0), {"slip": gain}, magnitude(effect, u), share, first,
+        Score(gained[0] - _cost(effect, u, c.std), gained[1]), refused=enough, std=c.std,
     )  # fmt: skip
+
+
+def _cost(effect: Sequence[Coordinate], u: Array, std: Mapping[str, float]) -> float:
+    """Nats that the coordinates of an effect cost, with priors of a usual size or a factor e each: see `score`."""
+    units = np.array(
+        [abs(k.value(x)) if k.logarithmic else abs(k.scale) for k, x in zip(effect, u.tolist(), strict=True)]
+    )
+    spread = np.array([std.get(k.name, np.inf) for k in effect]) / np.maximum(units, 1e-300)
+    return 0.5 * float(u @ u) + 0.5 * float(np.sum(np.log1p(1.0 / spread**2)))

@@ -2,7 +2,7 @@
 
 Three sentences hold for every diagnosis:
 
-1. No effect is kept with which held-out predictions get worse (`rises`).
+1. No effect is kept with which held-out predictions get worse by more than their scatter (`rises`).
 2. An equation fails if its misfit exceeds noise and is large enough to matter (`fails`); predictions of a signal fail
    if their error exceeds noise and 5 % of the signal's change within the horizon (`missed`).
 3. Where an equation or a prediction of the final model fails, the verdict is `unknown_effect`, whatever was added.
@@ -12,15 +12,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict
 from pneumo_ros.compare.wording import SIGNALS, amount, percent
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
-from pneumo_ros.diagnose.prediction import typical_error
+from pneumo_ros.diagnose.prediction import typical_error, usual_errors
 from pneumo_ros.plant import Model
 
+Array = NDArray[np.float64]
+
 SIGNIFICANT = 1.3  # times the noise: a larger error is more than noise and coarse sums explain
+BEYOND_SCATTER = 2.0  # standard errors of the change of predictions between windows
 MATERIAL_FORCE = 0.007  # of the drive force: a smaller misfit is a texture of friction that no model has
 LARGE = 0.05  # of the drive force, of the flow, or of a signal's change within the horizon
 SHAPE_LEFT = 0.25  # of the base's mean square: a smaller misfit is an inexact law of an added effect
@@ -41,9 +45,15 @@ class Missed:
         return f"predictions of the {SIGNALS[self.signal][0]} on held-out recordings are off by {off} in that time"
 
 
-def rises(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
-    """Whether held-out predictions, errors over noise by signal, get worse, and are worse than noise explains."""
-    return typical_error(after) > max(typical_error(before), SIGNIFICANT)
+def rises(before: Mapping[str, Array], after: Mapping[str, Array]) -> bool:
+    """Whether held-out predictions get worse, by more than their scatter, and are worse than noise explains.
+
+    before, after: by signal, logarithms of the errors over noise (windows,) in the same windows.
+    """
+    change = np.mean([after[name] - before[name] for name in before], axis=0)
+    scatter = float(np.std(change)) / np.sqrt(len(change))
+    first, second = typical_error(usual_errors(before)), typical_error(usual_errors(after))
+    return bool(second > max(first, SIGNIFICANT) and np.mean(change) > BEYOND_SCATTER * scatter)
 
 
 def verdict(added: Sequence[Addition], unexplained: Unexplained | None, missed: Sequence[Missed]) -> str:

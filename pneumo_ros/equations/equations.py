@@ -55,8 +55,7 @@ class Momentum:
         """Standard deviation (windows,) by sensor noise and by the error of sums over samples."""
         model, run, noise = self.model, self.run, self.run.noise
         ones = np.ones(len(run))
-        by_position = bump.noise([(bump.second, ones), (bump.first, self._steep)])
-        parts = [noise["position_m"] * model["piston.mass"] * by_position]
+        parts = [self.noise_by_position(bump)]
         if model.force_driven:
             parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
         else:
@@ -64,6 +63,11 @@ class Momentum:
                 parts.append(noise[name] * model[f"piston.{area}"] * bump.noise([(bump.phi, ones)]))
         parts.append(bump.coarseness(_MOMENTUM_SUMS) * np.sqrt(bump.apply(bump.phi, self._drive**2)))
         return np.asarray(np.sqrt(np.sum(np.square(parts), axis=0)))
+
+    def noise_by_position(self, bump: Bump) -> Array:
+        """Standard deviation (windows,) by the noise of the position alone, which the moving mass amplifies."""
+        by_position = bump.noise([(bump.second, np.ones(len(self.run))), (bump.first, self._steep)])
+        return np.asarray(self.run.noise["position_m"] * self.model["piston.mass"] * by_position)
 
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""

@@ -45,7 +45,7 @@ def addition_section(one: AdditionWords, model: "Model | None" = None) -> Sectio
         (p.meaning, tag("code", p.name), tag("strong", p.value), p.interval, p.unit) for p in one.parameters
     ]
     parts = [_hints(one.effect, model) if model else Html()]
-    parts.append(tag("p", f"Held-out error {one.error}; t = {one.t}."))
+    parts.append(tag("p", f"Held-out error {one.error}; {one.nats} nats."))
     if rows:
         head = ("parameter", "in the machine file", "value", "95 % interval", "unit")
         parts.append(table(head, rows, f"Parameters of {one.effect}", numeric=(2,)))

@@ -27,7 +27,7 @@ class AdditionWords:
     """An effect that was added; `error` is the held-out error without and with it, `rivals` a sentence or empty."""
 
     effect: str
-    t: str
+    nats: str  # that all recordings gain with it; a dash where it was not asked
     error: str
     parameters: tuple[ParameterWords, ...]
     rivals: str
@@ -43,7 +43,7 @@ def _addition(one: Mapping[str, Any]) -> AdditionWords:
     said = f"These recordings cannot distinguish {effect} from {listed(rivals, 'or')}: each explains them as well."
     return AdditionWords(
         effect,
-        f"{one['t']:.1f}" if "t" in one else "-",
+        f"{one['score']['nats']:.0f}" if "score" in one else "-",
         f"{times(one['holdout_error_before'])} -> {times(one['holdout_error_after'])}",
         tuple(parameter(effect, key, value) for key, value in one["parameters"].items()),
         said if rivals else "",
@@ -69,10 +69,10 @@ def additions_table(added: Sequence[AdditionWords], error: str = "held-out error
     """A row for each parameter of what was added; `error` is the heading of the errors."""
     rows: list[tuple[str, ...]] = []
     for one in added:
-        first: tuple[str, ...] = (one.effect, one.t, one.error)
+        first: tuple[str, ...] = (one.effect, one.nats, one.error)
         for p in one.parameters:
             rows.append((*first, p.key, p.value, p.interval, p.unit))
             first = ("", "", "")
         if not one.parameters:
             rows.append((*first, "(no parameter)", "", "", ""))
-    return Table("", ("Added", "t", error, "parameter", "value", "95 % interval", "unit"), tuple(rows), (1, 2, 4))
+    return Table("", ("Added", "nats", error, "parameter", "value", "95 % interval", "unit"), tuple(rows), (1, 2, 4))

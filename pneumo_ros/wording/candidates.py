@@ -22,7 +22,7 @@ class CandidateWords:
 
     effect: str
     state: str  # ADDED, RIVAL or REFUSED
-    t: float
+    nats: float  # that all recordings gain with it
     gain: float
     equation: str  # that it helps most; a dash where it helps none
     size: str  # in usual sizes
@@ -36,7 +36,7 @@ class CandidateWords:
 
 
 def candidates(result: Mapping[str, Any]) -> tuple[CandidateWords, ...]:
-    """All candidates, from the JSON of `diagnose`: what was added first, then by t."""
+    """All candidates, from the JSON of `diagnose`: what was added first, then by score."""
     rivals = {one["effect"]: one["indistinguishable_from"] for one in result["added"]}
     return tuple(_candidate(one, rivals) for one in result["candidates"])
 
@@ -46,7 +46,7 @@ def _candidate(one: Mapping[str, Any], rivals: Mapping[str, Sequence[str]]) -> C
     return CandidateWords(
         effect=one["effect"],
         state=ADDED if one["added"] else RIVAL if one["rival_of"] else REFUSED,
-        t=one["t"],
+        nats=one["score"]["nats"],
         gain=gain,
         equation="-" if gain < LITTLE else equation_words(one["equation"]),
         size=f"{number(one['size'])} x" if one["size"] else "0",
@@ -82,7 +82,7 @@ def _plain(objection: str) -> str:
 
 
 def foremost(found: Sequence[CandidateWords]) -> tuple[CandidateWords, ...]:
-    """Candidates that were not added but are shown everywhere: all rivals, and the refused ones with the largest t."""
+    """Candidates that were not added but are shown everywhere: all rivals, and the refused ones of best score."""
     refused = [one for one in found if one.state == REFUSED]
     return (*(one for one in found if one.state == RIVAL), *refused[:SHOWN])
 
@@ -92,5 +92,5 @@ def refused_table(found: Sequence[CandidateWords]) -> Table:
     rows = []
     for one in foremost(found):
         first, *others = one.reasons[:REASONS]
-        rows += [(one.effect, f"{one.t:.1f}", first), *(("", "", other) for other in others)]
-    return Table("", ("Not added", "t", "because"), tuple(rows), (1,))
+        rows += [(one.effect, f"{one.nats:.0f}", first), *(("", "", other) for other in others)]
+    return Table("", ("Not added", "nats", "because"), tuple(rows), (1,))

@@ -63,7 +63,8 @@ def test_the_json_is_as_promised(done: Done) -> None:
     assert added["parameters"]["coefficient"]["unit"] == "N s/m"
     first = data["candidates"][0]
     assert first["effect"] == "viscous_friction"
-    assert first["score"] > 5.0
+    assert first["score"]["nats"] > first["score"]["heldout_nats"] > 8.0
+    assert added["score"] == first["score"]
     assert first["holdout_error"] == added["holdout_error_after"]
     assert added["holdout_error_before"] == data["course"][1]["holdout_error"]
     assert data["suggested_experiment"] == ""

@@ -1,52 +1,20 @@
-"""Whether a size is stable when runs are left out, and large enough to matter."""
+"""Candidates judged by their scores, and sizes large enough to matter."""
 
-from types import SimpleNamespace
-from typing import cast
+from typing import Any
 
 import numpy as np
 import pytest
 
-from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
+from pneumo_ros.diagnose.candidate import MARGIN, MATERIAL, Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
-from pneumo_ros.diagnose.judging import magnitude, remaining, size_in, stable, undetermined
+from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.judging import by_score, magnitude, size_in, undetermined
+from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.steps import Step, without
 from pneumo_ros.plant import load_model
 
 MODEL = load_model("axis")
 LOAD = coordinates(MODEL.library.find("constant_load"))
-RUNS, EACH = 4, 200
-RUN = np.repeat(np.arange(RUNS), EACH)
-
-
-def fitted(slope: list[float], truth: list[float]) -> tuple[BaseFit, Hypothesis]:
-    """A load fitted to four runs: `slope` is its effect and `truth` its true value in each run."""
-    rng = np.random.default_rng(0)
-    C, y = np.array(slope)[RUN], np.array(truth)[RUN]
-    residual = C * y + rng.normal(size=len(RUN))
-    u = float(C @ residual / (C @ C))
-    names, family = ("momentum 100 ms",), np.zeros(len(RUN), dtype=np.int64)
-    evidence = SimpleNamespace(
-        names=names, family=family, run=RUN, runs=tuple(SimpleNamespace(time=np.zeros(1)) for _ in range(RUNS))
-    )
-    none = np.empty((len(RUN), 0))
-    base = BaseFit(MODEL, MODEL, (), np.empty(0), np.empty(0), cast(Evidence, evidence), residual, none)
-    h = Hypothesis("constant_load", LOAD, np.array([u]), np.empty(0), residual - C * u, slopes=-C[:, None])
-    return base, h
-
-
-@pytest.mark.parametrize(
-    ("slope", "truth", "expected"),
-    [
-        ([1.0] * 4, [2.0] * 4, True),
-        ([1.0, 1.0, 1.0, 9.0], [0.0, 0.0, 0.0, 2.0], False),  # three runs determine it well, and it is zero there
-        ([0.0, 0.0, 0.0, 9.0], [2.0] * 4, True),  # only one run reaches the place where it acts
-        ([0.01, 0.01, 0.01, 9.0], [0.0, 0.0, 0.0, 2.0], True),  # it hardly acts in the others
-    ],
-)
-def test_runs_speak_against_a_size_that_they_know(slope: list[float], truth: list[float], expected: bool) -> None:
-    assert stable(*fitted(slope, truth)) is expected
 
 
 @pytest.mark.parametrize(
@@ -98,63 +66,43 @@ def test_a_size_within_its_deviations_of_zero_may_be_zero(
     assert undetermined(model, effect, {f"{effect}.{key}": x for key, x in std.items()}) is expected
 
 
-def test_a_round_whose_effect_vanished_says_so() -> None:
+def candidate(**changed: Any) -> Candidate:
+    """A candidate that may be added, but for what is changed."""
     h = Hypothesis("constant_load", LOAD, np.array([1.0]), np.empty(0), np.empty(0), t=50.0)
-    candidate = Candidate(h, np.empty(0), {"momentum": 0.9}, 9.0, 1.0, True, 1.0, True, 0.0, 100.0)
-    step = Step(MODEL, (candidate,), candidate, (), {}, {})
-    assert without(step, ["spring_load"], "it is gone").added is candidate
+    given: dict[str, Any] = {"gain": {"momentum": 0.9}, "size": 1.0, "share": 1.0, "first": True}
+    return Candidate(h, np.empty(0), **given | {"score": Score(90.0, 10.0)} | changed)
+
+
+def test_a_round_whose_effect_vanished_says_so() -> None:
+    one = candidate()
+    step = Step(MODEL, (one,), one, (), {}, {})
+    assert without(step, ["spring_load"], "it is gone").added is one
     changed = without(step, ["constant_load"], "it is gone")
     assert changed.added is None
     assert changed.candidates[0].objections == ("it is gone",)
 
 
 @pytest.mark.parametrize(
-    ("gain", "rest", "objects"),
+    ("changed", "why"),
     [
-        (0.46, 0.004, True),  # the data determine it: it is the inexact law of another effect
-        (0.01, 0.004, False),  # they do not: base parameters can replace it
-        (0.46, 0.3, False),
+        ({}, ""),
+        ({"score": Score(MARGIN - 2.1, 2.0)}, "gain 8 nats with it, and 8 are asked"),
+        ({"score": Score(MARGIN - 1.9, 2.0)}, ""),
+        ({"score": Score(200.0, -0.2)}, "held-out recordings lose 0.2 nats with it"),
+        ({"size": 0.9 * MATERIAL}, "its size is only 0.045 times the usual one"),
+        ({"share": 0.3}, ""),
+        ({"share": 0.3, "first": False}, "removes only 30 % of the misfit beyond noise"),
+        ({"share": 0.2}, "removes only 20 % of the misfit beyond noise"),
+        ({"lag": 0.5}, "shorter than a sample"),
+        ({"refused": "it is known"}, "it is known"),
     ],
 )
-def test_an_effect_that_base_parameters_imitate_is_not_the_rest_of_another(
-    gain: float, rest: float, objects: bool
-) -> None:
-    h = Hypothesis("constant_load", LOAD, np.ones(1), np.empty(0), np.empty(0), t=10.0, relief=6.0)
-    candidate = Candidate(h, np.empty(0), {"chamber_a": gain}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0, rest=rest)
-    assert candidate.absorbed
-    assert any("inexact law of an added effect" in words for words in candidate.objections) is objects
+def test_a_candidate_is_refused_for_one_reason_each(changed: dict[str, Any], why: str) -> None:
+    objections = candidate(**changed).objections
+    assert len(objections) == bool(why)
+    assert all(why in one for one in objections)
 
 
-def test_what_is_left_is_counted_in_an_equation_where_it_helps() -> None:
-    """A thousandth of a large misfit in another equation is chance."""
-    candidate = Candidate(
-        Hypothesis("line_delay", (), np.empty(0), np.empty(0), np.empty(0)), np.empty(0),
-        {"momentum": 0.001, "chamber_a": 0.5}, 9.0, 1.0, True, 0.6, False, 0.0, 900.0,
-    )  # fmt: skip
-    first, now = {"momentum": 2e5, "chamber_a": 1000.0}, {"momentum": 1e5, "chamber_a": 4.0}
-    assert remaining(candidate, first, now) == pytest.approx(0.004)
-
-
-@pytest.mark.parametrize(("elsewhere", "objects"), [(frozenset({"chamber_a"}), False), (frozenset[str](), True)])
-def test_what_explains_an_equation_does_no_harm_where_it_does_not_act(elsewhere: frozenset[str], objects: bool) -> None:
-    """Pressure-dependent friction, next to a pressure sensor gain that had been misfitted to compensate for it."""
-    h = Hypothesis("pressure_dependent_friction", (), np.empty(0), np.empty(0), np.empty(0), t=200.0)
-    gain = {"momentum": 0.99, "chamber_a": -1.09}
-    candidate = Candidate(h, np.empty(0), gain, 9.0, 1.0, True, 0.99, False, 0.0, 900.0, elsewhere=elsewhere)
-    assert any("% larger" in words for words in candidate.objections) is objects
-
-
-@pytest.mark.parametrize(
-    ("name", "force", "objects"),
-    [
-        ("position_dependent_friction", 0.9, True),
-        ("position_dependent_friction", 1.1, False),
-        ("spring_load", 0.9, False),
-    ],
-)
-def test_a_profile_of_a_texture_is_no_effect(name: str, force: float, objects: bool) -> None:
-    """It must explain nearly all of a force below a hundredth of the drive force, because it can fit any force."""
-    own = coordinates(MODEL.library.find(name))
-    h = Hypothesis(name, own, np.full(len(own), 0.3), np.empty(0), np.empty(0), t=20.0)
-    candidate = Candidate(h, np.empty(0), {"momentum": 0.2}, 9.0, 0.3, True, 0.66, True, 0.0, 900.0, force=force)
-    assert any("misfit beyond noise" in words for words in candidate.objections) is objects
+def test_the_best_score_comes_first() -> None:
+    some = [candidate(score=Score(nats, 1.0)) for nats in (5.0, 50.0, -3.0)]
+    assert [one.score.train for one in by_score(some)] == [50.0, 5.0, -3.0]

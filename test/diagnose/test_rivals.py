@@ -10,6 +10,7 @@ from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.rivals import rivals, simplest
+from pneumo_ros.diagnose.score import Score
 from pneumo_ros.plant import load_model
 
 RNG = np.random.default_rng(0)
@@ -30,11 +31,11 @@ def fit() -> BaseFit:
     return BaseFit(model, model, (), np.empty(0), np.empty(0), evidence(), NOISE + TRACE, np.empty((N, 0)))
 
 
-def candidate(name: str, left: np.ndarray, score: float = 100.0) -> Candidate:
+def candidate(name: str, left: np.ndarray, nats: float = 100.0) -> Candidate:
     """A candidate that leaves `left` in training and held-out runs alike."""
     h = Hypothesis(name, (), np.empty(0), np.empty(0), left, t=50.0)
-    given: dict[str, Any] = {"gain": {"momentum": 0.9}, "z": 9.0, "size": 1.0, "stable": True, "share": 1.0}
-    return Candidate(hypothesis=h, held=left, first=True, decoy=0.0, score=score, **given)
+    given: dict[str, Any] = {"gain": {"momentum": 0.9}, "size": 1.0, "share": 1.0}
+    return Candidate(hypothesis=h, held=left, first=True, score=Score(nats, 1.0), **given)
 
 
 def test_what_leaves_the_same_is_a_rival() -> None:
@@ -42,8 +43,8 @@ def test_what_leaves_the_same_is_a_rival() -> None:
     assert [r.name for r in rivals(fit(), fit(), best, [best, other])] == ["spring_load"]
 
 
-def test_an_effect_that_leaves_more_is_no_rival() -> None:
-    best, other = candidate("constant_load", NOISE), candidate("spring_load", NOISE + 0.7 * TRACE, 99.0)
+def test_an_effect_with_a_worse_score_is_no_rival() -> None:
+    best, other = candidate("constant_load", NOISE), candidate("spring_load", NOISE + 0.7 * TRACE, 91.0)
     assert rivals(fit(), fit(), best, [best, other]) == []
 
 

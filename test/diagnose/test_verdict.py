@@ -11,12 +11,13 @@ from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict, SignalError
 from pneumo_ros.diagnose.diagnosis import remains
 from pneumo_ros.diagnose.outcome import Addition
+from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.verdict import driving, failing, material, missed, rises, verdict
 from pneumo_ros.plant import load_model
 
 FORCE, FLOW = 100.0, 1e-3  # N, kg/s, drive force and flow of the equations
 MODEL = load_model("axis")
-VISCOUS = Addition("viscous_friction", {}, (), 9.0, 1.0, 80.0)
+VISCOUS = Addition("viscous_friction", {}, (), 9.0, 1.0, 80.0, Score(900.0, 100.0))
 SPOOL = replace(VISCOUS, effect="valve_spool_dynamics")
 NOISE, SWING = 5e-6, 0.1  # m, of the position, and how far it swings to and fro with a period of 4 s
 
@@ -113,4 +114,13 @@ def test_what_is_missed_is_said_with_its_size() -> None:
     ("before", "after", "worse"), [(270.0, 476.0, True), (5.0, 5.01, True), (5.0, 5.0, False), (1.05, 1.06, False)]
 )
 def test_predictions_get_worse_unless_noise_explains_them(before: float, after: float, worse: bool) -> None:
-    assert rises({"position_m": before}, {"position_m": after}) is worse
+    first, second = ({"position_m": np.full(40, np.log(error))} for error in (before, after))
+    assert rises(first, second) is worse
+
+
+def test_a_rise_within_the_scatter_of_windows_is_none() -> None:
+    """Two of forty windows, in which a breakaway is predicted too early or too late."""
+    before = np.full(40, np.log(2.0))
+    after = before + np.where(np.arange(40) < 2, 1.5, 0.0)
+    assert not rises({"position_m": before}, {"position_m": after})
+    assert rises({"position_m": before}, {"position_m": before + 0.075})  # the same rise, in every window

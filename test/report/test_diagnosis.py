@@ -81,7 +81,7 @@ def test_every_plot_is_drawn_and_nothing_is_asked_for(opened: Open, verdict: str
     visit = opened(verdict)
     visit.page.evaluate("document.querySelectorAll('details').forEach(one => one.open = true)")
     names = visit.page.eval_on_selector_all(".plot", "all => all.map(one => one.id)")
-    own = {"waterfall", "evidence-t", "evidence-gain"}
+    own = {"waterfall", "evidence-nats", "evidence-gain"}
     assert own | {"remains-shape" if verdict == UNKNOWN else f"residual-momentum-{followed()}"} <= set(names)
     visit.show(*names)
     assert len(visit.requests) == 1
@@ -121,9 +121,9 @@ def test_the_evidence_stands_in_table_and_bars(opened: Open) -> None:
     visit, outcome = opened(FOUND), diagnosed(FOUND)
     rows = visit.page.locator("#candidates tbody tr").all()
     for row, one in zip(rows, outcome.ranking, strict=True):
-        name, t, gain, _, size, _, verdict = (cell.inner_text() for cell in row.locator("th, td").all())
+        name, nats, gain, _, size, _, verdict = (cell.inner_text() for cell in row.locator("th, td").all())
         assert name == one.effect
-        assert (t, gain) == (f"{one.score:.1f}", f"{100.0 * one.holdout_gain:.1f} %")
+        assert (nats, gain) == (f"{one.score.nats:.0f}", f"{100.0 * one.holdout_gain:.1f} %")
         assert size == f"{number(one.size)} x"
         assert verdict.startswith("refused" if one.objections else "added")
         assert all(text in verdict for text in one.objections)
@@ -165,7 +165,7 @@ def test_command_line_experiment_and_json_stand_as_they_were_given(opened: Open)
 @pytest.mark.parametrize("verdict", [FOUND, *(pytest.param(w, marks=pytest.mark.check) for w in WORDS if w != FOUND)])
 def test_it_can_be_read_in_light_and_dark_wide_and_narrow(opened: Open, verdict: str) -> None:
     visit = opened(verdict)
-    visit.show("waterfall", "evidence-t")
+    visit.show("waterfall", "evidence-nats")
     for width in (390, 1280):
         visit.page.set_viewport_size({"width": width, "height": 900})
         for scheme in ("dark", "light"):
@@ -199,7 +199,7 @@ def test_figures_have_names_of_their_own_and_words() -> None:
 
 def test_its_figures_can_be_drawn_as_files(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib", reason="comes with the extra 'figures'")
-    names = ("waterfall", "evidence-t", f"residual-momentum-{followed()}")
+    names = ("waterfall", "evidence-nats", f"residual-momentum-{followed()}")
     draw_charts([one for one in diagnosis_of(diagnosed(FOUND)).charts() if one.name in names], tmp_path)
     assert {path.stem for path in tmp_path.iterdir()} == set(names)
     drawn = (tmp_path / "waterfall.svg").read_text(encoding="utf-8")

@@ -106,7 +106,7 @@ def test_the_panel_shows_every_candidate_with_all_reasons_and_both_charts() -> N
     for one in result["candidates"]:
         assert all(reason.split(";")[0][:30] in markup for reason in one["objections"])
     charts = [chart.name for section in sections(result) for chart in section.charts]
-    assert charts[:2] == ["evidence-t", "evidence-gain"]
+    assert charts[:2] == ["evidence-nats", "evidence-gain"]
 
 
 def test_the_panel_draws_what_remains() -> None:

@@ -1,0 +1,156 @@
+"""The score of models: evidence of residuals with noise and a discrepancy that no model has."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.diagnose.score import Scoring, occam, prior_gain
+from pneumo_ros.plant import Model, load_model
+
+Array = NDArray[np.float64]
+HOP, N = 0.025, 8000
+MODEL = load_model("axis")
+LOAD = coordinates(MODEL.library.find("constant_load"))
+
+
+def evidence(windows: int = N, name: str = "momentum 100 ms", runs: int = 1) -> Evidence:
+    """The part of the evidence that scores read: one family of windows, of one newton of noise each."""
+    each = windows // runs
+    parts = {
+        "names": (name,), "family": np.zeros(windows, dtype=np.int64), "noise": np.ones(windows),
+        "time": np.tile(HOP * np.arange(each), runs), "run": np.repeat(np.arange(runs), each),
+    }  # fmt: skip
+
+    def noise_of(model: Model) -> Array:
+        """All of it is noise of the position, which the mass amplifies."""
+        return np.full(windows, model["piston.mass"] / MODEL["piston.mass"])
+
+    return cast(Evidence, SimpleNamespace(**parts, noise_of=noise_of))
+
+
+def noise(seed: int, windows: int = N, scale: float = 1.0) -> Array:
+    """Noise of overlapping windows: neighbours share half of it, every second one is independent."""
+    white = np.random.default_rng(seed).normal(size=windows + 1)
+    return scale * (white[1:] + white[:-1]) / np.sqrt(2.0)
+
+
+def slow(seed: int, size: float, time: float = 1.0) -> Array:
+    """A process of Ornstein and Uhlenbeck of this deviation and correlation time."""
+    kept = np.exp(-HOP / time)
+    steps = np.random.default_rng(seed).normal(size=N) * size * np.sqrt(1.0 - kept * kept)
+    values = np.empty(N)
+    values[0] = size * np.random.default_rng(seed + 1).normal()
+    for k in range(1, N):
+        values[k] = kept * values[k - 1] + steps[k]
+    return values
+
+
+def gained(without: Array, with_it: Array, scoring: Scoring | None = None) -> float:
+    """Nats that training and held-out runs gain, with the same residuals in both."""
+    scoring = scoring or Scoring(evidence(), evidence())
+    return float(np.sum(scoring.evidence(MODEL, with_it, with_it) - scoring.evidence(MODEL, without, without)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_noise_of_another_scale_is_no_evidence(seed: int) -> None:
+    """A model that amplifies the sensors' noise a little less explains nothing."""
+    assert abs(gained(noise(seed), noise(seed, scale=0.96))) < 6.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_mass_that_amplifies_noise_is_judged_by_its_own_noise(seed: int) -> None:
+    """A payload as heavy as the piston doubles the noise; it once was called worse by hundreds of nats."""
+    heavy = MODEL.with_parameters({"piston.mass": 2.0 * MODEL["piston.mass"]})
+    scoring, quiet, loud = Scoring(evidence(), evidence()), noise(seed), noise(seed, scale=2.0)
+    change = scoring.evidence(heavy, loud, loud) - scoring.evidence(MODEL, quiet, quiet)
+    assert abs(float(change.sum())) < 1e-6
+    missed = scoring.evidence(heavy, loud, loud) - scoring.evidence(MODEL, quiet + slow(seed, 2.0), quiet)
+    assert float(missed.sum()) > 100.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_constant_beside_noise_is_seen(seed: int) -> None:
+    """Two sets of 2000 independent windows: 0.2 noise deviations are worth 4000 x 0.02 nats."""
+    nats = gained(noise(seed) + 0.2, noise(seed))
+    assert 15.0 < nats < 120.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_same_beside_a_slow_discrepancy_is_not(seed: int) -> None:
+    """A hundred correlation times: the thousands of windows count as few. What changes faster is still seen."""
+    other = noise(seed) + slow(seed, 1.0)
+    assert gained(other + 0.2, other) < 15.0
+    assert gained(other + np.sin(15.0 * HOP * np.arange(N)), other) > 100.0
+
+
+def test_a_discrepancy_that_is_removed_counts_by_its_time() -> None:
+    """The faster it changes, the more independent parts it has."""
+    fast, slower = (gained(noise(0) + slow(3, 3.0, time), noise(0)) for time in (0.2, 5.0))
+    assert fast > 2.0 * slower > 100.0
+
+
+def test_single_wild_windows_say_little() -> None:
+    wild = noise(0)
+    wild[4000] = 1e4
+    assert 0.0 < gained(wild, noise(0)) < 50.0
+
+
+@pytest.mark.parametrize("runs", [2, 8])
+def test_one_long_run_counts_as_its_pieces(runs: int) -> None:
+    whole, pieces = Scoring(evidence(), evidence()), Scoring(evidence(runs=runs), evidence(runs=runs))
+    before, after = noise(0) + slow(3, 2.0), noise(0)
+    one, many = gained(before, after, whole), gained(before, after, pieces)
+    assert many == pytest.approx(one, rel=0.02)
+
+
+def test_the_order_of_runs_does_not_matter() -> None:
+    part = evidence(runs=4)
+    turned = np.concatenate(np.split(np.arange(N), 4)[::-1])
+    before, after = noise(0) + slow(3, 2.0), noise(0)
+    one, other = (gained(before[k], after[k], Scoring(part, part)) for k in (np.arange(N), turned))
+    assert one == pytest.approx(other, rel=0.01)
+
+
+def test_breakaways_count_each() -> None:
+    part = Scoring(evidence(40, "breakaway"), evidence(40, "breakaway"))
+    spread = 0.5 * np.random.default_rng(0).normal(size=40)
+    assert gained(spread + 2.0, spread, part) > 40.0
+    assert abs(gained(spread, spread[::-1], part)) < 1e-9
+
+
+def fitted(count: int, slope: float, shift: float = 0.0) -> tuple[BaseFit, Hypothesis, Hypothesis]:
+    """A base with one parameter, nothing, and a candidate of `count` coordinates of equal slopes."""
+    rng = np.random.default_rng(0)
+    part = evidence()
+    base = BaseFit(
+        MODEL, MODEL, ("piston.mass",), np.ones(1), np.array([shift]), part, noise(0),
+        rng.normal(size=(N, 1)),
+    )  # fmt: skip
+    nothing = Hypothesis("", (), np.empty(0), np.zeros(1), noise(0))
+    slopes = slope * rng.normal(size=(N, count))
+    return (
+        base,
+        nothing,
+        Hypothesis("constant_load", LOAD * count, np.zeros(count), np.zeros(1), noise(0), slopes=slopes),
+    )
+
+
+def test_free_coordinates_cost_by_their_number_and_by_how_well_they_are_known() -> None:
+    one, many = (occam(*fitted(count, 1.0)[::2]) for count in (1, 25))
+    assert one == pytest.approx(0.5 * np.log(1.0 + 0.36 * N), rel=0.05)
+    assert many == pytest.approx(25.0 * one, rel=0.05)
+    assert occam(*fitted(1, 0.0)[::2]) == pytest.approx(0.0)
+
+
+def test_base_parameters_that_return_to_what_is_known_of_them_are_evidence() -> None:
+    base, nothing, h = fitted(1, 1.0, shift=3.0)
+    h.shift = np.array([-3.0])
+    assert prior_gain(base, nothing, h) == pytest.approx(4.5)
+    h.u = np.array([2.0])
+    assert prior_gain(base, nothing, h) == pytest.approx(4.5 - 2.0)
