@@ -12,9 +12,9 @@ Windows of one width overlap by three quarters: every second one is nearly indep
 equation seen through windows of two widths counts half by each.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +26,11 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.jit import entry
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 TAIL = 3.0  # deviations: beyond, an innovation counts by its logarithm
-SIZES = 0.5 * 2.0 ** np.arange(12)  # of the discrepancy, over the median noise
+SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over the median noise
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
-NOISE = np.linspace(0.9, 1.1, 41)  # of the stated noise, which is known to a tenth
+NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise, which is known to a tenth
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
 BREAKAWAY_NOISE = 0.5  # of the stated spread of breakaways, which is larger than their scatter
 
@@ -49,77 +48,86 @@ class Score:
         return self.train + self.held
 
 
-@dataclass(frozen=True)
-class _Family:
-    """The windows of a family that are judged together; arrays (windows,), `weight` is that of each."""
-
-    rows: Index
-    weight: float
-    single: bool  # without correlation, as breakaways
-
-
 class Scoring:
     """The windows of training and held-out runs, and the score of residuals along them."""
 
     def __init__(self, train: Evidence, held: Evidence) -> None:
         self.parts = (train, held)
         self.names = tuple(dict.fromkeys([*train.names, *held.names]))
-        self.families = [[_split(part, name) for part in self.parts] for name in self.names]
 
     def evidence(self, model: Model, train: Array, held: Array) -> Array:
         """Log evidence (2,) of the residuals over noise that `model` leaves in training and held-out runs."""
-        values = [residual * part.noise for part, residual in zip(self.parts, (train, held), strict=True)]
         levels = [part.noise_of(model) for part in self.parts]
-        return np.asarray(np.sum([self._of_family(own, values, levels) for own in self.families], axis=0))
+        families = [_Family(name, self.parts, (train, held), levels) for name in self.names]
+        return np.asarray(np.sum([family.evidence() for family in families], axis=0))
 
-    def _of_family(
-        self, own: Sequence[Sequence[_Family]], residuals: Sequence[Array], levels: Sequence[Array]
-    ) -> Array:
-        """Log evidence (2,) of one family, at the discrepancy and the noise of the greatest likelihood."""
-        noise = np.concatenate([part.noise[f.rows] for part, some in zip(self.parts, own, strict=True) for f in some])
-        if not len(noise):
+
+class _Family:
+    """The windows of one family that a model leaves, in training and in held-out runs."""
+
+    def __init__(
+        self, name: str, parts: Sequence[Evidence], residuals: Sequence[Array], levels: Sequence[Array]
+    ) -> None:
+        self.single = name == "breakaway"  # without correlation
+        self.weight = 1.0 if self.single else 0.25
+        self.series: list[list[tuple[Array, ...]]] = []
+        for part, residual, level in zip(parts, residuals, levels, strict=True):
+            rows = np.flatnonzero(part.family == part.names.index(name)) if name in part.names else np.arange(0)
+            halves = [rows] if self.single else [rows[0::2], rows[1::2]]
+            self.series.append(
+                [(residual[k] * part.noise[k], level[k], part.noise[k], part.time[k], part.run[k]) for k in halves]
+            )
+        noise = np.concatenate([one[2] for some in self.series for one in some])
+        self.median = float(np.median(noise)) if len(noise) else 0.0
+        self._known: dict[tuple[float, float, float], tuple[Array, Array]] = {}
+
+    def evidence(self) -> Array:
+        """Log evidence (2,) at the discrepancy and the noise of the greatest likelihood."""
+        if not self.median:
             return np.zeros(2)
-        single, median = own[0][0].single, float(np.median(noise))
-        times = (0.0,) if single else TIMES
-        scale, best = 1.0, (0.0, times[0])
-
-        def likelihood(size: float, time: float, scale: float) -> tuple[Array, Array]:
-            scale *= BREAKAWAY_NOISE if single else 1.0
-            return self._likelihood(own, residuals, levels, size * median, time, scale)
-
+        times, scales = ((0.0,), (BREAKAWAY_NOISE,)) if self.single else (TIMES, NOISE)
+        best = 0.0, times[0], scales[len(scales) // 2]
         for _ in range(ROUNDS):
-            options = [(0.0, times[0]), *product(SIZES.tolist(), times)]
-            best = max(options, key=lambda one: float(likelihood(one[0], one[1], scale)[0].sum()))
-            if not single:
-                scale = max(NOISE, key=lambda one: float(likelihood(*best, one)[0].sum()))
-        return likelihood(*best, scale)[1]
+            scale = best[2]
+            tried = [(_peak(SIZES, partial(self._by_size, time, scale)), time, scale) for time in times]
+            size, time, _ = max(tried, key=self._whole)
+            times, best = (time,), (size, time, _peak(scales, partial(self._by_scale, size, time)))
+        return self._likelihood(*best)[1]
 
-    def _likelihood(
-        self,
-        own: Sequence[Sequence[_Family]],
-        residuals: Sequence[Array],
-        levels: Sequence[Array],
-        size: float,
-        time: float,
-        scale: float,
-    ) -> tuple[Array, Array]:
+    def _by_size(self, time: float, scale: float, size: float) -> float:
+        return self._whole((size, time, scale))
+
+    def _by_scale(self, size: float, time: float, scale: float) -> float:
+        return self._whole((size, time, scale))
+
+    def _whole(self, at: tuple[float, float, float]) -> float:
+        return float(self._likelihood(*at)[0].sum())
+
+    def _likelihood(self, size: float, time: float, scale: float) -> tuple[Array, Array]:
         """Log likelihood (2,) of training and held-out runs; and the same without what noise alone costs."""
-        whole, beyond = np.zeros(2), np.zeros(2)
-        for k, (part, some, residual, level) in enumerate(zip(self.parts, own, residuals, levels, strict=True)):
-            for f in some:
-                rows = f.rows
-                given = residual[rows], scale * level[rows], part.noise[rows], part.time[rows], part.run[rows]
-                values = f.weight * np.array(_log_likelihood(*given, size, time, TAIL))
-                whole[k] += values[0]
-                beyond[k] += values[1]
-        return whole, beyond
+        at = size, time, scale
+        if at not in self._known:
+            values = np.zeros((2, 2))
+            for k, some in enumerate(self.series):
+                for residual, level, noise, seconds, run in some:
+                    both = _log_likelihood(residual, scale * level, noise, seconds, run, size * self.median, time, TAIL)
+                    values[:, k] += self.weight * np.array(both)
+            self._known[at] = values[0], values[1]
+        return self._known[at]
 
 
-def _split(part: Evidence, name: str) -> list[_Family]:
-    rows = np.flatnonzero(part.family == part.names.index(name)) if name in part.names else np.empty(0, dtype=np.int64)
-    if name == "breakaway":
-        return [_Family(rows, 1.0, True)]
-    return [_Family(rows[k::2], 0.25, False) for k in (0, 1)]
+def _peak(options: Sequence[float], value: Callable[[float], float]) -> float:
+    """The option of the largest value, which rises up to it and falls beyond."""
+    low, high = 0, len(options) - 1
+    for _ in options:
+        if high - low < 3:
+            break
+        third = (high - low) // 3
+        if value(options[low + third]) < value(options[high - third]):
+            low += third + 1
+        else:
+            high -= third
+    return max(options[low : high + 1], key=value)
 
 
 @entry
