@@ -31,6 +31,7 @@ class Coordinate:
     low: float
     high: float
     unit: str = ""
+    role: str = ""
     wide: float = _WIDE  # prior deviation of a size, in typical sizes
 
     @property
@@ -125,7 +126,7 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     typical = p.default
     if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: the usual size is needed
         typical = p.neutral + usual_size(effect, key)
-    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit)
+    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit, p.role)
 
 
 def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:

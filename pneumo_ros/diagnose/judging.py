@@ -43,7 +43,7 @@ def judged(
                 share=explained(held.evidence, held.residual, r, acting(held.residual, r)),
                 first=first,
                 score=Score(float(gained[0]) + prior_gain(base, nothing, h) - occam(base, h), float(gained[1])),
-                lag=_lag(h, base.evidence.runs[0].sample_time),
+                lag=lag(h, base.evidence.runs[0].sample_time),
             )
         )
     return by_score(found)
@@ -60,7 +60,7 @@ def sizes(own: Sequence[Coordinate], at: Array) -> Array:
     Damping above the usual one adds to the lag 2 zeta / omega, so it multiplies the size of a fading frequency.
     """
     values = [(c, float(u)) for c, u in zip(own, at, strict=True)]
-    damping = max((c.value(u) / c.typical for c, u in values if c.name.endswith(".damping_ratio")), default=1.0)
+    damping = max((c.value(u) / c.typical for c, u in values if c.role == "damping"), default=1.0)
     return np.array(
         [c.size(u) * (max(damping, 1.0) if c.fading_frequency else 1.0) if c.is_size else 0.0 for c, u in values]
     )
@@ -86,6 +86,7 @@ def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
     return all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] < np.inf for c in fading)
 
 
-def _lag(h: Hypothesis, sample_time: float) -> float:
-    delays = [value for name, value in h.values.items() if name.endswith(".delay")]
+def lag(h: Hypothesis, sample_time: float) -> float:
+    """Shortest delay of an effect in samples of `sample_time` [s]; infinite if it has none."""
+    delays = [h.values[c.name] for c in h.coordinates if c.role == "delay"]
     return min(delays) / sample_time if delays else np.inf

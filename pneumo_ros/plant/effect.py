@@ -36,11 +36,15 @@ __all__ = [
 ]  # fmt: skip
 
 
+ROLES = ("", "delay", "damping")  # of a parameter, where its unit and neutral value do not say what it does
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values.
 
-    `neutral` is the value at which the effect adds nothing, for the parameters that have one.
+    `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for a
+    pure delay, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another role.
     """
 
     default: float
@@ -49,8 +53,11 @@ class Parameter:
     low: float = -math.inf
     high: float = math.inf
     neutral: float | None = None
+    role: str = ""
 
     def __post_init__(self) -> None:
+        if self.role not in ROLES:
+            raise UsageError(f"role {self.role!r} of a parameter is unknown; known are {', '.join(ROLES[1:])}")
         if not (self.low <= self.default <= self.high):
             raise UsageError(
                 f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"

@@ -1,5 +1,6 @@
 """Candidates judged by their scores, and sizes large enough to matter."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,12 @@ import pytest
 from pneumo_ros.diagnose.candidate import MARGIN, MATERIAL, Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.judging import by_score, magnitude, size_in, undetermined
+from pneumo_ros.diagnose.judging import by_score, lag, magnitude, size_in, undetermined
 from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.steps import Step, without
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
+from pneumo_ros.plant.effect import Effect, Parameter
 
 MODEL = load_model("axis")
 LOAD = coordinates(MODEL.library.find("constant_load"))
@@ -106,3 +109,25 @@ def test_a_candidate_is_refused_for_one_reason_each(changed: dict[str, Any], why
 def test_the_best_score_comes_first() -> None:
     some = [candidate(score=Score(nats, 1.0)) for nats in (5.0, 50.0, -3.0)]
     assert [one.score.train for one in by_score(some)] == [50.0, 5.0, -3.0]
+
+
+class OwnLag(Effect):
+    """The spool of a user, whose names are not the catalogue's."""
+
+    corner = Parameter(200.0, "rad/s", "corner frequency", low=5.0, high=1000.0, neutral=1000.0)
+    zeta = Parameter(0.7, "1", "damping ratio", low=0.2, high=5.0, role="damping")
+    dead_time = Parameter(5e-3, "s", "delay", low=0.0, high=0.2, neutral=0.0, role="delay")
+
+
+def test_an_effect_of_a_user_is_judged_by_roles_not_by_names() -> None:
+    own = coordinates(OwnLag)
+    ringing, lagging = (np.array([own[0].u(400.0), own[1].u(zeta), 0.0]) for zeta in (0.7, 2.8))
+    assert magnitude(own, lagging) == pytest.approx(4.0 * magnitude(own, ringing))
+    h = Hypothesis("own_lag", own, np.array([0.0, 0.0, 0.06]), np.empty(0), np.empty(0))
+    assert lag(h, sample_time=1e-3) == pytest.approx(0.3)
+    assert lag(replace(h, coordinates=own[:2], u=h.u[:2]), sample_time=1e-3) == np.inf
+
+
+def test_an_unknown_role_is_refused() -> None:
+    with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, damping"):
+        Parameter(0.7, "1", "damping ratio", role="dampin")

@@ -15,7 +15,7 @@ class LineDelay(Effect):
     conserves mass and has the exact mean delay.
     """
 
-    delay = Parameter(6e-3, "s", "delay tau of either line", low=0.0, high=0.2, neutral=0.0)
+    delay = Parameter(6e-3, "s", "delay tau of either line", low=0.0, high=0.2, neutral=0.0, role="delay")
     loss_pressure = Parameter(0.0, "Pa", "pressure p_l at which a line lets 1/e through", 0.0, 1e5, neutral=0.0)
 
     line_a_1 = State("kg/s", "flow of line a after the first lag")

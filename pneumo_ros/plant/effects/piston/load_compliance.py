@@ -11,7 +11,7 @@ class LoadCompliance(Effect):
 
     load_share = Parameter(0.4, "1", "share of the moving mass behind the spring", low=0.0, high=0.8, neutral=0.0)
     frequency = Parameter(20.0, "Hz", "natural frequency of the load on its spring, rod held", low=0.5, high=100.0)
-    damping_ratio = Parameter(0.05, "1", "damping ratio zeta of the same", low=0.0, high=2.0)
+    damping_ratio = Parameter(0.05, "1", "damping ratio zeta of the same", low=0.0, high=2.0, role="damping")
 
     stretch = State("m", "deflection x of the spring")
     v_l = State("m/s", "velocity of the load", initial="v")

@@ -11,7 +11,7 @@ class PositionSensorDelay(Effect):
     This is the (2, 2) Pade approximation of the delay, written for the lag e, which is 0 at rest at any position.
     """
 
-    delay = Parameter(5e-3, "s", "delay tau of the position signal", low=0.0, high=0.2, neutral=0.0)
+    delay = Parameter(5e-3, "s", "delay tau of the position signal", low=0.0, high=0.2, neutral=0.0, role="delay")
 
     behind = State("m", "lag e of the signal")
     v_behind = State("m/s", "rate of change of e")

@@ -9,7 +9,7 @@ class ValveSpoolDynamics(Effect):
     """Spool position with a second-order lag to the command: x'' = omega^2 (u - x) - 2 zeta omega x'."""
 
     angular_frequency = Parameter(80.0, "rad/s", "natural angular frequency omega", 5.0, FASTEST, neutral=FASTEST)
-    damping_ratio = Parameter(0.7, "1", "damping ratio zeta", low=0.2, high=5.0)
+    damping_ratio = Parameter(0.7, "1", "damping ratio zeta", low=0.2, high=5.0, role="damping")
 
     x_s = State("V", "spool position")
     w_s = State("V/s", "spool velocity")
