@@ -60,9 +60,12 @@ class Evidence:
         return len(self.noise)
 
     def noise_of(self, model: Model) -> Array:
-        """Noise (residuals,) with the moving mass of `model`, which amplifies the noise of the position."""
-        grown = (moving_mass(model) / self.mass) ** 2
-        return np.asarray(self.noise * np.sqrt(np.maximum(1.0 + self.by_mass**2 * (grown - 1.0), 1e-12)))
+        """Noise (residuals,) with the moving mass of `model`, which amplifies the noise of the position.
+
+        A mass behind a spring is no part of it, but amplifies what is slower than the spring: the noise is never less.
+        """
+        grown = max(moving_mass(model) / self.mass, 1.0) ** 2
+        return np.asarray(self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0)))
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""

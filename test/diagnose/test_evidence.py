@@ -59,3 +59,16 @@ def test_ranking_errs_by_hundredths_of_an_effect(name: str) -> None:
     exact, ranked = (np.diff(evidence.residuals(whole, variants, ranking=r), axis=0) for r in (False, True))
     error = np.sqrt(np.mean((ranked - exact) ** 2) / np.mean(exact**2))
     assert 0.0 < error < 0.03, "and is not the same evaluation"
+
+
+def test_a_payload_amplifies_the_noise_of_the_position_and_a_load_on_a_spring_does_not_lower_it() -> None:
+    model, _, run = own("sweep")
+    evidence = Evidence(model, [run])
+    heavy = model.with_effects([*model.effects, "payload_mass"], {"payload_mass.mass_added": model["piston.mass"]})
+    swinging = model.with_effects([*model.effects, "load_compliance"])
+    momentum = np.isin(evidence.family, [k for k, name in enumerate(evidence.names) if name.startswith("momentum")])
+    grown = evidence.noise_of(heavy) / evidence.noise
+    assert grown[~momentum] == pytest.approx(1.0)
+    assert 1.0 < grown[momentum].min() <= grown[momentum].max() <= 2.0
+    assert np.median(grown[evidence.family == evidence.names.index("momentum 40 ms")]) > 1.9
+    assert evidence.noise_of(swinging) == pytest.approx(evidence.noise)
