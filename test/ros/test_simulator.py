@@ -207,7 +207,8 @@ def test_pause_holds_step_goes_one_sample_and_reset_starts_again(axis: Probe) ->
     axis.quiet("joint_states")
     assert len(stepped) == 2
     moved = stepped[1].position[0] - stepped[0].position[0]
-    assert moved == pytest.approx(0.002 * stepped[0].velocity[0], rel=0.1)
+    mean = 0.5 * (stepped[0].velocity[0] + stepped[1].velocity[0])  # a busy machine may still be at its start
+    assert moved == pytest.approx(0.002 * mean, rel=0.1)
     assert axis.pause(False).success
     assert not axis.trigger("simulator/step").success  # it runs
     assert axis.trigger("simulator/reset").success
