@@ -15,6 +15,28 @@ SHOWING = {
     "pressure_a": "hold", "pressure_b": "hold", "pressure_difference": "hold", "time": "pauses",
 }  # fmt: skip
 
+SHOWN_BY = {  # where an effect acts, or its name -> experiment that shows it
+    "chamber": "hold", "friction": "slow-reversals", "line": "fast-reversals", "piston": "fast-reversals",
+    "sensor": "fast-reversals", "valve": "triangle", "constant_load": "slow-reversals", "cushioning": "full-strokes",
+    "dwell_time_breakaway": "pauses", "friction_lag": "fast-reversals", "friction_warmup": "pauses",
+    "position_dependent_friction": "full-strokes", "pressure_sensor_offset": "vent", "spring_load": "full-strokes",
+    "supply_pressure_droop": "full-strokes", "choked_flow": "full-strokes", "valve_spool_dynamics": "fast-reversals",
+}  # fmt: skip
+ANY = "steps"  # for an effect of a user
+
+
+def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
+    """Effects of which these recordings would not show a usual size, why not, and the experiment that does."""
+    from pneumo_ros.diagnose.candidate import MARGIN
+
+    library, found = outcome.model.library, list[dict[str, str]]()
+    for name, nats in (outcome.steps[-1].unseen if outcome.steps else {}).items():
+        room = library.find(name).__module__.split(".")[-2]
+        why = f"of its usual size it would gain {max(nats, 0.0):.1f} nats in these recordings, and {MARGIN:g} are asked"
+        experiment = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
+        found.append({"effect": name, "because": why, "experiment": f"pneumo experiment {experiment}"})
+    return found
+
 
 def suggested(outcome: "Outcome", machine: str, console: Console) -> str:
     """A sentence, "" where there is nothing to distinguish or no time left; `machine` is what --model takes."""

@@ -25,6 +25,7 @@ from pneumo_ros.diagnose.slips import polished, slips, with_values_of
 from pneumo_ros.diagnose.steps import Found, Step, without
 from pneumo_ros.diagnose.strain import followed
 from pneumo_ros.diagnose.timing import lateness, later
+from pneumo_ros.diagnose.unseen import unseen
 from pneumo_ros.diagnose.verdict import rises
 from pneumo_ros.errors import OutOfTimeError
 from pneumo_ros.plant import Model
@@ -193,7 +194,8 @@ class Search:
         best = simplest(base, held, [candidate for candidate in candidates if not candidate.objections])
         others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
-        return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1])
+        blind = {} if best else unseen(ranking.screened)
+        return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1], blind)
 
     def _rank(self, model: Model) -> Ranking:
         """Rank all candidates on the training runs, try the best on the held-out ones."""

@@ -1,7 +1,7 @@
 """The rounds and the outcome of a search."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.plant import Model
@@ -20,6 +20,7 @@ class Step:
     rivals: tuple[Candidate, ...]
     before: dict[str, float]  # scale over noise by family on held-out runs
     after: dict[str, float]
+    unseen: dict[str, float] = field(default_factory=dict)  # effects these recordings cannot show: nats at usual size
 
 
 def without(step: Step, gone: Sequence[str], why: str) -> Step:

@@ -57,11 +57,22 @@ def diagnosis(result: Mapping[str, Any]) -> DiagnosisWords:
         steps=steps([(one["model"], one["holdout_error"]) for one in result["course"]]),
         signals=signals_table(result["holdout"], heads, f"{horizon:g} s, rms over the held-out recordings"),
         candidates=candidates(result),
-        remains=remains(result),
+        remains=(*remains(result), *unseen(result)),
         moved=moved_sentence(result["refit"]),
         moved_table=moved_table(result["refit"]),
         experiment=result["suggested_experiment"],
         horizon=horizon,
+    )
+
+
+def unseen(result: Mapping[str, Any]) -> tuple[str, ...]:
+    """A sentence for each experiment that would show effects which these recordings cannot show."""
+    by_experiment: dict[str, list[str]] = {}
+    for one in result.get("cannot_say", ()):
+        by_experiment.setdefault(one["experiment"], []).append(one["effect"])
+    return tuple(
+        f"These recordings cannot show whether there is {listed(effects, 'or')}; to see it: {experiment}."
+        for experiment, effects in by_experiment.items()
     )
 
 

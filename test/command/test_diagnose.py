@@ -74,6 +74,16 @@ def test_the_json_is_as_promised(done: Done) -> None:
     assert (data["train"], data["held_out"]) == (["steps", "sweep"], ["holdout_sweep"])
 
 
+def test_what_the_recordings_cannot_show_comes_with_an_experiment_that_does(done: Done) -> None:
+    """They never reach the ends of the stroke."""
+    unseen = {one["effect"]: one for one in done[1]["cannot_say"]}
+    assert unseen["cushioning"]["experiment"] == "pneumo experiment full-strokes"
+    assert "0.0 nats in these recordings, and 8 are asked" in unseen["cushioning"]["because"]
+    assert not unseen.keys() & {one["effect"] for one in done[1]["added"]}
+    assert "These recordings cannot show whether there is" in done[0].stdout
+    assert "to see it: pneumo experiment full-strokes." in done[0].stdout
+
+
 def test_the_report_repeats_it(folder: Path, done: Done) -> None:
     page = (folder / "page.html").read_text(encoding="utf-8")
     assert page.startswith("<!doctype html>")

@@ -53,7 +53,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     end = time.monotonic() + options.within
     from pneumo_ros.command.diagnosis_json import diagnosis_dict
     from pneumo_ros.command.diagnosis_text import text
-    from pneumo_ros.command.suggesting import suggested
+    from pneumo_ros.command.suggesting import cannot_say, suggested
     from pneumo_ros.plant import save_model
 
     check_machine_file(options)
@@ -67,6 +67,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     outcome, estimates = diagnosed(model, train, held, console, end)
     experiment = suggested(outcome, options.out or options.model, console)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
+    result["cannot_say"] = cannot_say(outcome)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
     console.say(text(result))
     if options.out:

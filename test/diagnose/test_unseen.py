@@ -1,0 +1,32 @@
+"""Effects of which the recordings would not show a usual size."""
+
+import numpy as np
+import pytest
+
+from pneumo_ros.diagnose.candidate import MARGIN
+from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.unseen import unseen
+
+
+def fitted(name: str, *deviations: float) -> Hypothesis:
+    """A candidate whose sizes have these deviations, in usual sizes."""
+    none = np.empty(0)
+    return Hypothesis(name, (), none, none, none, covariance=np.diag(np.square(deviations)))
+
+
+def test_what_moves_no_residual_cannot_be_seen() -> None:
+    found = unseen([fitted("cushioning", 30.0), fitted("viscous_friction", 0.01)])
+    assert list(found) == ["cushioning"]
+    assert found["cushioning"] < 0.01
+
+
+@pytest.mark.parametrize(("deviation", "nats"), [(0.22, None), (0.25, 0.5 * (16.0 - np.log(17.0)))])
+def test_a_usual_size_must_gain_what_is_asked(deviation: float, nats: float | None) -> None:
+    found = unseen([fitted("spring_load", deviation)])
+    assert found == ({} if nats is None else {"spring_load": pytest.approx(nats)})
+    assert nats is None or nats < MARGIN
+
+
+def test_one_size_in_one_shape_is_enough() -> None:
+    assert unseen([fitted("leakage_to_atmosphere", 30.0, 0.1)]) == {}
+    assert unseen([fitted("heat_exchange", 30.0), fitted("heat_exchange", 0.1), fitted("heat_exchange", 9.0)]) == {}
