@@ -26,11 +26,15 @@ ANY = "steps"  # for an effect of a user
 
 
 def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
-    """Effects of which these recordings would not show a usual size, why not, and the experiment that does."""
+    """Effects of which these recordings would not show a usual size, why not, and the experiment that does.
+
+    None for an axis without valve, for which there are no experiments.
+    """
     from pneumo_ros.diagnose.candidate import MARGIN
 
     library, found = outcome.model.library, list[dict[str, str]]()
-    for name, nats in (outcome.steps[-1].unseen if outcome.steps else {}).items():
+    told = outcome.steps[-1].unseen if outcome.steps and not outcome.model.force_driven else {}
+    for name, nats in told.items():
         room = library.find(name).__module__.split(".")[-2]
         why = f"of its usual size it would gain {max(nats, 0.0):.1f} nats in these recordings, and {MARGIN:g} are asked"
         experiment = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))

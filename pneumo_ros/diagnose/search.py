@@ -194,8 +194,13 @@ class Search:
         best = simplest(base, held, [candidate for candidate in candidates if not candidate.objections])
         others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
-        blind = {} if best else unseen(ranking.screened)
+        blind = {} if best else self.unseen(model, ranking)
         return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1], blind)
+
+    def unseen(self, model: Model, ranking: Ranking) -> dict[str, float]:
+        """Effects that the recordings cannot show, without those that contain one of the model: it stands for them."""
+        found = unseen(ranking.screened)
+        return {n: nats for n, nats in found.items() if not {*model.effects} & {*model.library.find(n).contains}}
 
     def _rank(self, model: Model) -> Ranking:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
