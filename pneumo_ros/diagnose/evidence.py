@@ -15,6 +15,7 @@ from scipy.signal import savgol_coeffs
 from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, follow_each, frame_of
+from pneumo_ros.diagnose.mechanics import moving_mass
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion
 from pneumo_ros.plant import Model
@@ -81,11 +82,6 @@ class Evidence:
             made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
         whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
-
-
-def moving_mass(model: Model) -> float:
-    """Mass that moves with the piston at once [kg]."""
-    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
 
 
 class RunEvidence:

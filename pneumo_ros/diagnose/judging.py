@@ -1,7 +1,6 @@
 """Candidates judged: their scores, their sizes, and what they remove on held-out runs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +35,7 @@ def judged(
         gained = scoring.evidence(base.everything.with_parameters(h.values), h.residual, r) - without
         found.append(
             Candidate(
-                hypothesis=replace(h, relief=h.relief - nothing.relief),
+                hypothesis=h,
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
                 size=magnitude(h.coordinates, h.u),

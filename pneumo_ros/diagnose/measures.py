@@ -13,7 +13,6 @@ MOST_BLOCK = 3.0  # largest log likelihood of one block of time, or event: it ta
 ACTS = 0.25  # noise deviations: an effect acts where it changes a residual by more
 FEWEST_WINDOWS = 30  # windows where an effect acts: a family with fewer is not judged there; windows overlap
 FEWEST_OF = {"breakaway": 8}  # the same for families without overlap
-WILD = 3.0  # usual sizes: larger residuals are limited to this
 NOISE = {"breakaway": 0.56}  # mean square of noise alone, where it is not 1: the stated spread is larger
 
 

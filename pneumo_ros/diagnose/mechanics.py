@@ -55,6 +55,11 @@ def moves(model: Model, name: str) -> bool:
     return any(signal in mechanics for function in functions for signal in function.writes)
 
 
+def moving_mass(model: Model) -> float:
+    """Mass that moves with the piston at once [kg]."""
+    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
+
+
 def driven_by_pressures(model: Model, run: Run) -> Run:
     """The run as that of an axis driven by its measured pressures, corrected for the model's pressure sensors."""
     if model.force_driven:

@@ -89,19 +89,13 @@ class _Family:
         best = 0.0, times[0], scales[len(scales) // 2]
         for _ in range(ROUNDS):
             scale = best[2]
-            tried = [(_peak(SIZES, partial(self._by_size, time, scale)), time, scale) for time in times]
-            size, time, _ = max(tried, key=self._whole)
-            times, best = (time,), (size, time, _peak(scales, partial(self._by_scale, size, time)))
+            tried = [(_peak(SIZES, partial(self._whole, time=time, scale=scale)), time, scale) for time in times]
+            size, time, _ = max(tried, key=lambda at: self._whole(*at))
+            times, best = (time,), (size, time, _peak(scales, partial(self._whole, size, time)))
         return self._likelihood(*best)[1]
 
-    def _by_size(self, time: float, scale: float, size: float) -> float:
-        return self._whole((size, time, scale))
-
-    def _by_scale(self, size: float, time: float, scale: float) -> float:
-        return self._whole((size, time, scale))
-
-    def _whole(self, at: tuple[float, float, float]) -> float:
-        return float(self._likelihood(*at)[0].sum())
+    def _whole(self, size: float, time: float, scale: float) -> float:
+        return float(self._likelihood(size, time, scale)[0].sum())
 
     def _likelihood(self, size: float, time: float, scale: float) -> tuple[Array, Array]:
         """Log likelihood (2,) of training and held-out runs; and the same without what noise alone costs."""
@@ -130,7 +124,7 @@ def _peak(options: Sequence[float], value: Callable[[float], float]) -> float:
     return max(options[low : high + 1], key=value)
 
 
-@entry
+@entry  # numba finds the types by the call
 def _log_likelihood(residual, noise, usual, time, run, size, correlation, tail):  # type: ignore[no-untyped-def]
     """Of residuals (n,) with `noise` (n,); and the same without what noise alone costs, where `usual` (n,) is its unit.
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pneumo_ros.diagnose.mechanics import moving_mass
 from pneumo_ros.equations.breakaway import REST, Breakaway
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.plant import Model
@@ -22,7 +23,7 @@ def slip_times(model: Model, breakaways: Sequence[Breakaway]) -> tuple[float, ..
         return ()
     speeds = np.concatenate([[1e-7], np.geomspace(1e-4, 10.0, 200)])
     friction = sliding_friction(model, speeds)
-    mass = model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
+    mass = moving_mass(model)
     bent = model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
 
     def slides(breakaway: Breakaway) -> float:
