@@ -11,7 +11,9 @@ import math
 import textwrap
 import types
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -23,6 +25,8 @@ from pneumo_ros.plant.effect import Function
 _BUILTINS = ("abs", "min", "max", "float", "int", "bool", "range", "len", "round", "True", "False", "None")
 _REPLACED = ("power_of_two", "exponent", "mantissa")  # bit operations, imported from `jit`
 _MODULES = {math: "math", np: "np"}
+_Helpers = list[tuple[Callable[..., Any], str]]  # functions that a function calls, and their names in its text
+_written = WeakKeyDictionary[ast.FunctionDef, tuple[str, _Helpers]]()  # texts, as rewriting takes most of the time
 
 
 class SourceBook:
@@ -42,23 +46,30 @@ class SourceBook:
         return self._written[function.tree]
 
     def _define(self, tree: ast.FunctionDef, scope: dict[str, Any], name: str, title: str) -> str:
-        body = _Rewriter(self, tree, scope, title).rewrite()
-        key = ast.unparse(body)
-        if key not in self._names:
+        text = self._text(tree, scope, title)
+        if text not in self._names:
             while name in self._taken:
                 name += "_"
             self._taken.add(name)
-            self._names[key] = name
-            body.name = name
-            self.texts.append("@inline\n" + ast.unparse(ast.fix_missing_locations(body)))
-        return self._names[key]
+            self._names[text] = name
+            self.texts.append(f"@inline\ndef {name}{text.removeprefix(f'def {tree.name}')}")
+        return self._names[text]
+
+    def _text(self, tree: ast.FunctionDef, scope: dict[str, Any], title: str) -> str:
+        """The text of a function under its own name, after the functions that it calls."""
+        text, helpers = _written.get(tree, ("", []))
+        if not text or any(self.helper(function, title) != name for function, name in helpers):
+            rewriter = _Rewriter(self, tree, scope, title)
+            text = ast.unparse(ast.fix_missing_locations(rewriter.rewrite()))
+            _written[tree] = text, rewriter.helpers
+        return text
 
     def helper(self, function: Callable[..., Any], title: str) -> str:
         """Add a plain Python function that an effect calls."""
         if function in self._open:
             raise UsageError(f"{title} calls {function.__name__}, which calls itself; write a loop of fixed length")
         if function not in self._written:
-            tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+            tree = _tree(function)
             if not isinstance(tree, ast.FunctionDef):
                 raise UsageError(f"{title} calls {function.__name__}, which is no plain function")
             self._open.append(function)
@@ -66,6 +77,11 @@ class SourceBook:
             self._written[function] = name
             self._open.pop()
         return self._written[function]
+
+
+@lru_cache(1024)
+def _tree(function: Callable[..., Any]) -> ast.stmt:
+    return ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
 
 
 class _Rewriter(ast.NodeTransformer):
@@ -76,6 +92,7 @@ class _Rewriter(ast.NodeTransformer):
         self.tree = ast.parse(ast.unparse(tree)).body[0]
         stored = {n.id for n in ast.walk(self.tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
         self.local = stored | {a.arg for a in tree.args.args}
+        self.helpers: _Helpers = []
 
     def rewrite(self) -> ast.FunctionDef:
         tree = self.tree
@@ -99,7 +116,7 @@ class _Rewriter(ast.NodeTransformer):
         module = self.scope.get(node.value.id) if isinstance(node.value, ast.Name) else None
         ours = getattr(maths, node.attr, None) if module in (math, np) else None
         if isinstance(ours, types.FunctionType) and self.scope is not vars(maths):  # math.exp and np.exp mean our exp
-            return ast.Name(self.book.helper(ours, self.title), node.ctx)
+            return self._called(ours, node.ctx)
         return self.generic_visit(node)
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
@@ -118,7 +135,11 @@ class _Rewriter(ast.NodeTransformer):
         if isinstance(value, types.FunctionType):
             if value.__module__ == maths.__name__ and name in _REPLACED:
                 return node
-            return ast.Name(self.book.helper(value, self.title), node.ctx)
+            return self._called(value, node.ctx)
         known = [*self.local, *(n for n in vars(maths) if not n.startswith("_"))]
         hint = " This builtin does not compile." if hasattr(builtins, name) else ""
         raise UsageError(f"{self.title}: {unknown_name('name', name, known)}{hint}")
+
+    def _called(self, function: Callable[..., Any], context: ast.expr_context) -> ast.Name:
+        self.helpers.append((function, self.book.helper(function, self.title)))
+        return ast.Name(self.helpers[-1][1], context)
