@@ -63,6 +63,11 @@ class Parameter:
                 f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"
             )
 
+    @property
+    def optional(self) -> bool:
+        """Whether a machine file may leave it out: its default adds nothing."""
+        return self.default == self.neutral
+
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""
         if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):

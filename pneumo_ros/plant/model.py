@@ -44,7 +44,9 @@ class Model:
         frame: Iterable[str] = FRAME,
         defaults: bool = False,
     ) -> "Model":
-        """A model of `effects` with `values` by dotted name; missing values are an error unless `defaults`.
+        """A model of `effects` with `values` by dotted name.
+
+        A missing value is an error unless `defaults` or unless its default adds nothing.
 
         Raises UsageError, with the nearest names, for unknown or repeated effects and unknown, missing or bad values.
         """
@@ -383,7 +385,8 @@ def _whole(voltages: int, parts: int) -> int:
 def _checked(composition: Composition, values: Mapping[str, object], defaults: bool) -> dict[str, float]:
     for dotted in values:
         composition.parameter(dotted)
-    absent = [dotted for dotted in composition.parameters if dotted not in values]
+    needed = [dotted for dotted in composition.parameters if not composition.parameter(dotted).optional]
+    absent = [dotted for dotted in needed if dotted not in values]
     if absent and not defaults:
         raise UsageError(missing_parameters(composition, absent))
     checked = {}

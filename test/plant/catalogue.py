@@ -24,7 +24,7 @@ HARDLY_A_BRISTLE = {
     "lugre_friction.static_friction": 1e-3, "lugre_friction.coulomb_friction": 1e-3,
     "lugre_friction.bristle_stiffness": 1e3, "lugre_friction.bristle_damping": 0.0,
 }  # fmt: skip
-_READ_BY_BRISTLES = {"friction_scale", "friction_rise", "static_rise", "slip", "stribeck"}
+_READ_BY_BRISTLES = {"friction_scale", "friction_rise", "static_scale", "static_rise", "slip", "stribeck"}
 _RANGES = {  # by unit: where the random values of states and signals lie
     "V": (-10.0, 10.0), "s": (0.0, 1e3), "Pa": (5e4, 1e6), "kg/s": (-0.02, 0.02), "m3": (0.0, 1e-4),
     "N": (-500.0, 500.0), "kg": (0.0, 20.0), "m": (-1.0, 1.0), "m/s": (-5.0, 5.0), "N s/m": (0.0, 5e3), "1": (0.0, 1.0),

@@ -18,6 +18,10 @@ NORMAL = np.sqrt(293.0 / 293.15)  # the rig's gas is as warm as the norm's
 SAME = {
     "viscous_friction": ({"viscous_out": 180.0, "viscous_in": 180.0}, {"coefficient": 180.0}),
     "asymmetric_friction": ({"retract_excess": 0.3}, {"ratio": 0.3}),
+    "asymmetric_friction, of Coulomb friction": (
+        {"retract_excess": 0.3, "retract_static": 0.0},
+        {"ratio": 0.3, "static_ratio": (100.0 + 0.3 * 70.0) / (1.3 * 100.0) - 1.0},
+    ),
     "asymmetric_viscous_friction": (
         {"viscous_out": 30.0, "viscous_in": 100.0},
         {"coefficient_extension": 30.0, "coefficient_retraction": 100.0},

@@ -107,3 +107,11 @@ def test_numbers_with_bare_exponents_are_numbers(tmp_path: Path) -> None:
     path.write_text(machine_text(load_model("axis")).replace("supply_pressure: 700000.0", "supply_pressure: 6e5"))
     assert yaml.safe_load("6e5") == "6e5"
     assert load_model(path)["air.supply_pressure"] == 6e5
+
+
+def test_a_parameter_whose_default_adds_nothing_may_be_left_out(tmp_path: Path) -> None:
+    name, axis = "asymmetric_friction", load_model("axis")
+    path = save_model(axis.with_effects([*axis.effects, name], {f"{name}.ratio": 0.3}), tmp_path / "saved.yaml")
+    path.write_text("\n".join(line for line in path.read_text().splitlines() if "static_ratio" not in line))
+    model = load_model(path)
+    assert (model[f"{name}.ratio"], model[f"{name}.static_ratio"]) == (0.3, 0.0)

@@ -28,11 +28,11 @@ class LugreFriction(Effect):
     signature = "sticks until the static friction is reached, falls to the Coulomb level as it slides"
 
     def equations(
-        v, z, stribeck, friction_scale, friction_rise, static_rise,
+        v, z, stribeck, friction_scale, friction_rise, static_scale, static_rise,
         static_friction, coulomb_friction, bristle_stiffness, bristle_damping, breakaway_ratio,
     ):  # fmt: skip
         F_c = friction_scale * coulomb_friction + friction_rise
-        F_s = friction_scale * static_friction + friction_rise + static_rise
+        F_s = friction_scale * static_scale * static_friction + friction_rise + static_rise
         g = max(F_c + (F_s - F_c) * stribeck, 1e-6 * coulomb_friction)
         share = bristle_stiffness * abs(z) / g  # of the largest deflection, |z| / z_max
         rate_z = bristle_stiffness * abs(v) / g  # times alpha:
@@ -45,16 +45,18 @@ class LugreFriction(Effect):
         resistance = bristle_damping
         return friction, resistance, der_z, rate_z
 
-    def outputs(friction_scale, friction_rise, static_rise, static_friction):
-        static_level = friction_scale * static_friction + friction_rise + static_rise
+    def outputs(friction_scale, friction_rise, static_scale, static_rise, static_friction):
+        static_level = friction_scale * static_scale * static_friction + friction_rise + static_rise
         return static_level
 
     def advance(
-        v, z, friction_scale, friction_rise, static_rise, static_friction, coulomb_friction, bristle_stiffness,
+        v, z, friction_scale, friction_rise, static_scale, static_rise,
+        static_friction, coulomb_friction, bristle_stiffness,
     ):  # fmt: skip
         # |z| <= F_s / sigma_0 is an invariant of the exact equation; one step at high speed may overshoot it. A bristle
         # that unloads keeps its deflection, though the level may have fallen (asymmetric friction at a reversal)
-        level = friction_scale * max(static_friction, coulomb_friction) + friction_rise + max(static_rise, 0.0)
+        highest = max(static_scale * static_friction, coulomb_friction)
+        level = friction_scale * highest + friction_rise + max(static_rise, 0.0)
         limit = level / bristle_stiffness if v * z >= 0.0 else abs(z)
         z = min(max(z, -limit), limit)
         return z
