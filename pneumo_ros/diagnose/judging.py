@@ -79,10 +79,10 @@ def size_in(model: Model, name: str) -> float:
 def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
     """Whether all sizes of an effect of the model may be zero: each is within two of its deviations `std` of neutral.
 
-    A size of infinite deviation, on which there are no data, does not count as zero.
+    Sizes of infinite deviation, on which there are no data, say nothing.
     """
-    fading = [c for c in coordinates(model.library.find(name)) if c.is_size]
-    return all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] < np.inf for c in fading)
+    fading = [c for c in coordinates(model.library.find(name)) if c.is_size and std[c.name] < np.inf]
+    return bool(fading) and all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] for c in fading)
 
 
 def lag(h: Hypothesis, sample_time: float) -> float:

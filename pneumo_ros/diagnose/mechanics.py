@@ -48,8 +48,8 @@ def mechanical(model: Model) -> Model | None:
 def moves(model: Model, name: str) -> bool:
     """Whether an effect acts on the piston or on its position sensor."""
     mechanics = {
-        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_rise", "slip", "stribeck",
-        "y_measured", "resistance",
+        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_scale", "static_rise", "slip",
+        "stribeck", "y_measured", "resistance",
     }  # fmt: skip
     functions = model.library.find(name).functions.values()
     return any(signal in mechanics for function in functions for signal in function.writes)

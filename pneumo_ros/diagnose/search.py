@@ -38,6 +38,7 @@ TEXTURE = 0.01  # of the drive force: a larger force that is unexplained acts at
 PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
 SHOWN_ANYWAY = 4  # candidates tried where none is promising, so that the objections can be shown
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
+ENOUGH = 40  # segments: what is found along the signals needs few more
 VANISHED = "its size vanishes beside the effects added later"
 UNHELPFUL = "predictions of held-out runs over 1 s do not improve with it"
 
@@ -111,7 +112,8 @@ class Search:
                 if last is not None and last.added is not None and pays(least, self.predicted(new)):
                     steps[-1:] = [last, replace(steps[-1], model=new)]
                     model = new
-                return self.kept(self.settled(base), self.settled(model), steps)
+                settled = self.settled(base)
+                return self.kept(settled, self.settled(model, settled), steps)
         except KeyboardInterrupt as stop:
             steps = [step for step in steps if step.added is None or step.added.name in model.effects]
             late = isinstance(stop, OutOfTimeError)
@@ -126,7 +128,7 @@ class Search:
         for k in (k for k, step in enumerate(steps) if step.added is not None):
             final = not any(step.added for step in steps[k + 1 :])
             if not final and rises(before, self.logs(steps[k + 1].model)):
-                steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model))
+                steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model, base))
             after = self.logs(model if final else steps[k + 1].model)
             if rises(before, after):
                 last = without(steps[k], [step.added.name for step in steps[k:] if step.added], UNHELPFUL)
@@ -139,7 +141,8 @@ class Search:
         new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
         new = self.polish(self.fitter.simplest(new, candidate.name))
         std = self.fitter.deviations(new)
-        gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or undetermined(new, n, std)]
+        older = [n for n in self.fitter.added(new) if n != candidate.name and undetermined(new, n, std)]
+        gone = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL or n in older]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
@@ -156,17 +159,19 @@ class Search:
         new = with_values_of(model, polished(*made, deviations, self.fitter.added(model), self.fitter.limits))
         return new if not model.force_driven or self._predicts_training(new, model) else model
 
-    def settled(self, model: Model) -> Model:
+    def settled(self, model: Model, smaller: Model | None = None) -> Model:
         """The model refitted by prediction of segments, where nothing else determines the balance of forces.
 
         That is on recordings with too few breakaways, and on force-driven axes, whose motion no pressures limit; and
-        only where predictions of training and held-out runs get no worse.
+        only where predictions of training and held-out runs get no worse. The refit starts at the values of a `smaller`
+        model that was settled: from elsewhere it may end in a valley, and the larger model would seem to predict worse.
         """
         if not model.force_driven and self.slips(model) is not None:
             return model
         self.progress(0.9, "refitting by prediction")
         sure = self.fitter.deviations(model)  # by the equations along the motion: segments alone bias the parameters
-        new = polish(self.fitter, model, self.train.runs, sure=sure).model
+        begin = with_values_of(model, smaller) if smaller else model
+        new = polish(self.fitter, begin, self.train.runs, ENOUGH, sure=sure).model
         better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
         return new if better else model
 
@@ -180,7 +185,7 @@ class Search:
         Not where a significant force is unexplained while the piston slides: it acts at breakaways, too.
         """
         made, ranking = self.slips(model), self.ranking(model)
-        if made is None or not ranking.quiet:
+        if made is None or not made[1].judge or not ranking.quiet:
             return model, None
         first = model.effects == self.start.effects
         against = partial(self.fitter.against, model)

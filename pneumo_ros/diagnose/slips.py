@@ -25,7 +25,7 @@ Rows = NDArray[np.int64]
 
 FRICTION_KEYS = ("static_friction", "coulomb_friction", "stribeck_velocity", "bristle_stiffness")
 STATIC, COMMON = "lugre_friction.static_friction", 0.005
-FEWEST_EVENTS = 12  # events
+FEWEST_FITTED, FEWEST_JUDGED = 5, 12  # events: of training runs for friction, of both kinds for an effect
 SURE_SHARE = 0.02  # relative uncertainty below which a parameter keeps its prior from the equations
 POOR = (
     1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
@@ -44,6 +44,11 @@ class Slips:
     train_rows: Rows
     held_rows: Rows
 
+    @property
+    def judge(self) -> bool:
+        """Whether there are enough of them to judge an effect."""
+        return min(len(self.train_rows), len(self.held_rows)) >= FEWEST_JUDGED
+
     def train(self, model: Model) -> Segments:
         """Training events, first guesses by `model`."""
         return events(model, self.train_runs, self.train_rows)
@@ -54,13 +59,13 @@ class Slips:
 
 
 def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Model, Slips] | None:
-    """The mechanics of `model` and the events to judge them by; None where either is missing."""
+    """The mechanics of `model` and the events to fit them to; None where either is missing."""
     alone = mechanical(model)
     if alone is None or "lugre_friction" not in alone.effects:
         return None
     first, second = (tuple(driven_by_pressures(model, run) for run in runs) for runs in (train, held))
     found = Slips(first, second, event_rows(alone, first), event_rows(alone, second))
-    return (alone, found) if min(len(found.train_rows), len(found.held_rows)) >= FEWEST_EVENTS else None
+    return (alone, found) if len(found.train_rows) >= FEWEST_FITTED else None
 
 
 def with_values_of(model: Model, other: Model) -> Model:

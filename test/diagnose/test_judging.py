@@ -45,9 +45,12 @@ def test_a_spool_damped_like_a_first_order_is_as_large_as_its_lag() -> None:
 @pytest.mark.parametrize(
     ("effect", "values", "std", "expected"),
     [
-        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": 0.029}, True),
-        ("asymmetric_friction", {"ratio": -0.07}, {"ratio": 0.029}, False),
-        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": np.inf}, False),  # the data do not determine it
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": 0.029, "static_ratio": 0.1}, True),
+        ("asymmetric_friction", {"ratio": -0.07}, {"ratio": 0.029, "static_ratio": 0.1}, False),
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": 0.029, "static_ratio": np.inf}, True),
+        ("asymmetric_friction", {"ratio": -0.07}, {"ratio": 0.029, "static_ratio": np.inf}, False),
+        # the data determine nothing
+        ("asymmetric_friction", {"ratio": -0.027}, {"ratio": np.inf, "static_ratio": np.inf}, False),
         (
             "leakage_to_atmosphere",  # of the other chamber
             {"conductance_a": 5e-10, "conductance_b": 1e-13},

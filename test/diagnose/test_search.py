@@ -63,7 +63,7 @@ class Played(Search):
         step = Step(model, (), candidate(self.slipping), (), {}, {})
         return model.with_effects([*model.effects, self.slipping]), step
 
-    def settled(self, model: Model) -> Model:
+    def settled(self, model: Model, smaller: Model | None = None) -> Model:
         return model
 
 
@@ -117,7 +117,7 @@ def test_an_addition_that_the_last_refit_makes_worse_is_taken_back_with_those_af
     class Settling(Played):
         """Its last refits by prediction help the base, and nothing else."""
 
-        def settled(self, model: Model) -> Model:
+        def settled(self, model: Model, smaller: Model | None = None) -> Model:
             return model.with_parameters({"piston.mass": 4.0}) if model.effects == BASE.effects else model
 
     search = Settling([LOAD, DROOP], errors(base=10.0, load=5.0, load_droop=3.0))
@@ -127,6 +127,22 @@ def test_an_addition_that_the_last_refit_makes_worse_is_taken_back_with_those_af
     assert found.model.effects == BASE.effects
     assert [step.added for step in found.steps] == [None]
     assert {c.refused for c in found.steps[0].candidates if c.name == LOAD} == {UNHELPFUL}
+
+
+def test_the_larger_model_is_settled_from_the_values_of_the_settled_base() -> None:
+    """From elsewhere its refit may end in a valley, and it would seem to predict worse."""
+    asked = list[tuple[tuple[str, ...], Model | None]]()
+
+    class Settling(Played):
+        def settled(self, model: Model, smaller: Model | None = None) -> Model:
+            asked.append((model.effects, smaller))
+            return model.with_parameters({"piston.mass": 4.0})
+
+    Settling([LOAD], errors(base=10.0, load=5.0)).run()
+    assert [(effects == BASE.effects, smaller and smaller["piston.mass"]) for effects, smaller in asked] == [
+        (True, None),
+        (False, 4.0),
+    ]
 
 
 def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:

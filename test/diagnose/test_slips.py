@@ -39,6 +39,19 @@ def test_a_refit_that_moved_far_is_restarted_where_it_ended(
     assert found[STATIC] == pytest.approx(AXIS[STATIC] + rounds)
 
 
+@pytest.mark.parametrize(
+    ("train", "held", "fitted", "judged"), [(4, 40, False, False), (5, 4, True, False), (12, 12, True, True)]
+)
+def test_few_events_determine_friction_and_more_an_effect(
+    train: int, held: int, fitted: bool, judged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = iter((np.arange(train), np.arange(held)))
+    monkeypatch.setattr(slips, "event_rows", lambda *_: next(rows))
+    found = slips.slips(AXIS, [], [])
+    assert (found is not None) is fitted
+    assert (found is not None and found[1].judge) is judged
+
+
 def test_friction_of_zero_has_the_prior_of_its_default() -> None:
     """A fit may drive static friction to 0, and a machine may have none."""
     without = AXIS.with_parameters({STATIC: 0.0})
