@@ -23,7 +23,7 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-ITERATIONS, ROUNDS_EACH = 8, 12  # sets of slopes, and rounds with each of them
+ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
 FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
 LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: after a smaller gain there is no other round
 SHARES = (1.0, 0.3, 0.1)  # of a step, tried at once

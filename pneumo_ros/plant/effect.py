@@ -44,7 +44,8 @@ class Parameter:
     """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values.
 
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for a
-    pure delay, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another role.
+    pure delay, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another role. `optional`:
+    whether a machine file may leave the parameter out, as one may whose default is neutral.
     """
 
     default: float
@@ -54,19 +55,16 @@ class Parameter:
     high: float = math.inf
     neutral: float | None = None
     role: str = ""
+    optional: bool = False
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "optional", self.optional or self.default == self.neutral)
         if self.role not in ROLES:
             raise UsageError(f"role {self.role!r} of a parameter is unknown; known are {', '.join(ROLES[1:])}")
         if not (self.low <= self.default <= self.high):
             raise UsageError(
                 f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"
             )
-
-    @property
-    def optional(self) -> bool:
-        """Whether a machine file may leave it out: its default adds nothing."""
-        return self.default == self.neutral
 
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""

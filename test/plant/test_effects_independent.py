@@ -27,6 +27,7 @@ SAME = {
         {"coefficient_extension": 30.0, "coefficient_retraction": 100.0},
     ),
     "heat_exchange": ({"adiabatic": 1.2}, {"rate": 0.0, "share": 0.5}),
+    "heat_exchange, through a film": ({"wall_time": 0.25}, {"rate": 4.0, "film": 1.0}),
     "pressure_dependent_friction": ({"seal": 8e-5}, {"coefficient": 8e-5}),
     "stribeck_shape": ({"stribeck_power": 0.7, "stribeck_rational": 0.6}, {"exponent": 0.7, "rational": 0.6}),
     "friction_warmup": ({"warm_share": 0.3, "warm_fast": 1.0}, {"share": 0.3, "time_constant": 1.0}),
