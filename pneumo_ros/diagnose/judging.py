@@ -29,10 +29,15 @@ def judged(
 
     All are compared with `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
     """
-    scoring, found = Scoring(base.evidence, held.evidence), list[Candidate]()
-    without = scoring.evidence(base.everything, nothing.residual, held.residual) if hypotheses else np.zeros(2)
+    scoring, fits, found = Scoring(base.evidence, held.evidence), (base, held), list[Candidate]()
+    if not hypotheses:
+        return found
+    without, alone = scoring.best(base.everything, fits, (nothing.residual, held.residual, nothing.shift))
     for h, r in zip(hypotheses, residuals, strict=True):
-        gained = scoring.evidence(base.everything.with_parameters(h.values), h.residual, r) - without
+        model = base.everything.with_parameters(h.values)
+        gained, beside = scoring.best(model, fits, (h.residual, r, h.shift))
+        gained = gained - without
+        prior = prior_gain(base, alone[2], beside[2], h)
         found.append(
             Candidate(
                 hypothesis=h,
@@ -41,7 +46,7 @@ def judged(
                 size=magnitude(h.coordinates, h.u),
                 share=explained(held.evidence, held.residual, r, acting(held.residual, r)),
                 first=first,
-                score=Score(float(gained[0]) + prior_gain(base, nothing, h) - occam(base, h), float(gained[1])),
+                score=Score(float(gained[0]) + prior - occam(base, h), float(gained[1])),
                 lag=lag(h, base.evidence.runs[0].sample_time),
             )
         )

@@ -31,6 +31,7 @@ TAIL = 3.0  # deviations: beyond, an innovation counts by its logarithm
 SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over the median noise
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
 NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise, which is known to a tenth
+STEPS, SHARES, LITTLE = 3, (1.0, 0.3), 0.5  # of base parameters: most steps, shares tried, least gain for another
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
 BREAKAWAY_NOISE = 0.5  # of the stated spread of breakaways, which is larger than their scatter
 
@@ -48,6 +49,14 @@ class Score:
         return self.train + self.held
 
 
+Fit = tuple[Array, Array, Array]  # residuals of training and held-out runs over noise, shift of base parameters
+
+
+def moved(fit: Fit, fits: tuple[BaseFit, BaseFit], step: Array) -> Fit:
+    """A fit with its base parameters moved by a step (free,), by the slopes of training and held-out residuals."""
+    return fit[0] + fits[0].slopes @ step, fit[1] + fits[1].slopes @ step, fit[2] + step
+
+
 class Scoring:
     """The windows of training and held-out runs, and the score of residuals along them."""
 
@@ -57,9 +66,39 @@ class Scoring:
 
     def evidence(self, model: Model, train: Array, held: Array) -> Array:
         """Log evidence (2,) of the residuals over noise that `model` leaves in training and held-out runs."""
+        return np.asarray(np.sum([family.evidence() for family in self._families(model, train, held)], axis=0))
+
+    def _families(self, model: Model, train: Array, held: Array) -> list["_Family"]:
         levels = [part.noise_of(model) for part in self.parts]
-        families = [_Family(name, self.parts, (train, held), levels) for name in self.names]
-        return np.asarray(np.sum([family.evidence() for family in families], axis=0))
+        return [_Family(name, self.parts, (train, held), levels) for name in self.names]
+
+    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> tuple[Array, Fit]:
+        """The log evidence (2,) of a fit, its base parameters moved to where the training runs' evidence is largest.
+
+        `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little
+        of what parameters explain, which the correlation of the discrepancy makes worth many nats.
+        """
+        found = self.evidence(model, *fitted[:2])
+        for _ in range(STEPS):
+            step = self._step(model, fits[0], fitted)
+            tried = [moved(fitted, fits, share * step) for share in SHARES]
+            each = [self.evidence(model, *one[:2]) for one in tried]
+            value = [float(e[0]) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)]
+            k, before = int(np.argmax(value)), float(found[0]) - strain(fitted[2] + fits[0].offset)
+            if not value[k] > before:
+                break
+            found, fitted = each[k], tried[k]
+            if value[k] < before + LITTLE:
+                break
+        return found, fitted
+
+    def _step(self, model: Model, base: BaseFit, fitted: Fit) -> Array:
+        """The step (free,) of base parameters by generalised least squares on the training runs."""
+        normal, slope = np.eye(len(base.names)), fitted[2] + base.offset
+        for family in self._families(model, *fitted[:2]):
+            A, b = family.normal(base.slopes)
+            normal, slope = normal + A, slope + b
+        return np.asarray(-np.linalg.solve(normal, slope))
 
 
 class _Family:
@@ -71,9 +110,11 @@ class _Family:
         self.single = name == "breakaway"  # without correlation
         self.weight = 1.0 if self.single else 0.25
         self.series: list[list[tuple[Array, ...]]] = []
+        self.rows: list[list[NDArray[np.int64]]] = []
         for part, residual, level in zip(parts, residuals, levels, strict=True):
             rows = np.flatnonzero(part.family == part.names.index(name)) if name in part.names else np.arange(0)
             halves = [rows] if self.single else [rows[0::2], rows[1::2]]
+            self.rows.append(halves)
             self.series.append(
                 [(residual[k] * part.noise[k], level[k], part.noise[k], part.time[k], part.run[k]) for k in halves]
             )
@@ -83,8 +124,21 @@ class _Family:
 
     def evidence(self) -> Array:
         """Log evidence (2,) at the discrepancy and the noise of the greatest likelihood."""
-        if not self.median:
-            return np.zeros(2)
+        return self._likelihood(*self._best())[1] if self.median else np.zeros(2)
+
+    def normal(self, slopes: Array) -> tuple[Array, Array]:
+        """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in training runs."""
+        matrix, gradient = np.zeros((slopes.shape[1], slopes.shape[1])), np.zeros(slopes.shape[1])
+        at = self._best() if self.median else (0.0, 0.0, 1.0)
+        for rows, (residual, level, noise, seconds, run) in zip(self.rows[0], self.series[0], strict=True):
+            both = np.column_stack([residual, slopes[rows] * noise[:, None]])
+            _whiten(both, at[2] * level, seconds, run, at[0] * self.median, at[1], TAIL)
+            A = both[:, 1:]
+            matrix, gradient = matrix + self.weight * A.T @ A, gradient + self.weight * A.T @ both[:, 0]
+        return matrix, gradient
+
+    def _best(self) -> tuple[float, float, float]:
+        """Size and correlation time of the discrepancy, and scale of the noise, of the greatest likelihood."""
         times, scales = ((0.0,), (BREAKAWAY_NOISE,)) if self.single else (TIMES, NOISE)
         best = 0.0, times[0], scales[len(scales) // 2]
         for _ in range(ROUNDS):
@@ -92,7 +146,7 @@ class _Family:
             tried = [(_peak(SIZES, partial(self._whole, time=time, scale=scale)), time, scale) for time in times]
             size, time, _ = max(tried, key=lambda at: self._whole(*at))
             times, best = (time,), (size, time, _peak(scales, partial(self._whole, size, time)))
-        return self._likelihood(*best)[1]
+        return best
 
     def _whole(self, size: float, time: float, scale: float) -> float:
         return float(self._likelihood(size, time, scale)[0].sum())
@@ -150,6 +204,27 @@ def _log_likelihood(residual, noise, usual, time, run, size, correlation, tail):
     return total, beyond
 
 
+@entry
+def _whiten(series, noise, time, run, size, correlation, tail):  # type: ignore[no-untyped-def]
+    """Residuals and slopes (n, 1 + free) in place: their innovations over the deviation, less at wild windows."""
+    n, columns = series.shape
+    mean, variance, full = np.zeros(columns), 0.0, size * size
+    for k in range(n):
+        if k > 0 and run[k] == run[k - 1] and correlation > 0.0:
+            kept = np.exp((time[k - 1] - time[k]) / correlation)
+            variance = kept * kept * variance + full * (1.0 - kept * kept)
+        else:
+            kept, variance = 0.0, full
+        spread = variance + noise[k] * noise[k]
+        wild = max((series[k, 0] - kept * mean[0]) ** 2 / spread / (tail * tail), 1.0)
+        gain, over = variance / spread / wild, 1.0 / np.sqrt(spread * wild)
+        for j in range(columns):
+            error = series[k, j] - kept * mean[j]
+            mean[j] = kept * mean[j] + gain * error
+            series[k, j] = error * over
+        variance *= 1.0 - gain
+
+
 def occam(base: BaseFit, h: Hypothesis) -> float:
     """Nats that the free coordinates of a candidate cost: half the log determinant of 1 + prior information.
 
@@ -163,6 +238,9 @@ def occam(base: BaseFit, h: Hypothesis) -> float:
     return 0.5 * float(np.linalg.slogdet(np.eye(len(information)) + information)[1])
 
 
-def prior_gain(base: BaseFit, nothing: Hypothesis, h: Hypothesis) -> float:
-    """Log prior of a candidate's coordinates and base parameters, minus that of base parameters without it."""
-    return strain(nothing.shift + base.offset) - strain(h.shift + base.offset) - 0.5 * float(h.u @ h.u)
+def prior_gain(base: BaseFit, alone: Array, beside: Array, h: Hypothesis) -> float:
+    """Log prior of a candidate's coordinates and base parameters, minus that of base parameters without it.
+
+    alone, beside: shifts (free,) of the base parameters.
+    """
+    return strain(alone + base.offset) - strain(beside + base.offset) - 0.5 * float(h.u @ h.u)

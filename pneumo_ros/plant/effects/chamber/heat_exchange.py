@@ -2,7 +2,7 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State, pi, sqrt
 
-SLOWEST = 1.0  # 1/s: below it the effect fades into the base model, whose gas leaves at the wall's temperature
+SLOWEST = 0.1  # 1/s: below it the effect fades into the base model, whose gas leaves at the wall's temperature
 PRESSURE = 4e5  # Pa, of the gas at mid stroke whose rate is given
 
 
