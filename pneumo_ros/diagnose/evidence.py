@@ -7,14 +7,16 @@ The equations are those of `equations.equations`; each residual has its noise fr
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs
 
 from pneumo_ros.compare.binned import clusters
+from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
-from pneumo_ros.diagnose.follow import Followed, follow_each, frame_of
+from pneumo_ros.diagnose.follow import Followed, Frame, follow_each, frame_of, noisier
 from pneumo_ros.diagnose.mechanics import moving_mass
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion
@@ -41,6 +43,7 @@ class Evidence:
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
         self.mass = moving_mass(model)
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
+        self.amplification = lru_cache(4)(self._amplification)  # a candidate's is needed several times
 
     def _index(self, by_run: list["RunEvidence"]) -> None:
         self.by_run = by_run
@@ -64,9 +67,31 @@ class Evidence:
         """Noise (residuals,) with the moving mass of `model`, which amplifies the noise of the position.
 
         A mass behind a spring is no part of it, but amplifies what is slower than the spring: the noise is never less.
+        States of effects are driven along the measured motion, and may ring with its noise (`amplification`).
         """
         grown = max(moving_mass(model) / self.mass, 1.0) ** 2
-        return np.asarray(self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0)))
+        rigid = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
+        return np.asarray(rigid * self.amplification(model)[self.family])
+
+    def _amplification(self, model: Model) -> Array:
+        """Factor (families,) by which the states of effects in `model` amplify the sensors' noise; never less than 1.
+
+        Measured on the longest run, to which its noise is added once more; breakaways are no windows.
+        """
+        plain = without_states(model)
+        if plain is model:
+            return np.ones(len(self.names))
+        ratio = self.change(model) / np.maximum(self.change(plain), 1e-300)
+        return np.where([name == "breakaway" for name in self.names], 1.0, np.maximum(ratio, 1.0))
+
+    def change(self, model: Model) -> Array:
+        """Root mean square (families,) of the change of residuals [noise] where noise is added once more."""
+        part = max(self.by_run, key=lambda one: len(one.run))
+        own = self.run == part.families[0].run
+        first, second = (part.values(model, model.values[None], frame=frame)[0] for frame in (part.frame, part.noisier))
+        square = ((second - first) / self.noise[own]) ** 2
+        count = np.bincount(self.family[own], minlength=len(self.names))
+        return np.sqrt(np.bincount(self.family[own], square, len(self.names)) / np.maximum(count, 1))
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""
@@ -82,6 +107,13 @@ class Evidence:
             made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
         whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
         return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
+
+
+def without_states(model: Model) -> Model:
+    """The model with the effects that have states of their own switched off; itself if it has none, or none acts."""
+    effects = [effect for effect in model.composition.effects if effect.states]
+    off = {c.name: c.neutral for effect in effects for c in coordinates(effect) if c.neutral is not None}
+    return model.with_parameters(off) if any(model[name] != value for name, value in off.items()) else model
 
 
 class RunEvidence:
@@ -111,11 +143,17 @@ class RunEvidence:
         self.rested = np.array(rested, dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
 
-    def values(self, model: Model, parameters: Array, ranking: bool = False) -> Array:
-        """Residuals (variants, usable windows) in their units, family after family."""
+    @cached_property
+    def noisier(self) -> Frame:
+        """Its frame with the noise of all sensors added once more."""
+        return noisier(self.frame)
+
+    def values(self, model: Model, parameters: Array, ranking: bool = False, frame: Frame | None = None) -> Array:
+        """Residuals (variants, usable windows) in their units, family after family; by default of its own `frame`."""
+        frame = frame or self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
-        measured = [self._measured(model, f, self.frame.states) for f in self.families]
-        for variant in follow_each(model, self.frame, parameters, ranking):
+        measured = [self._measured(model, f, frame.states) for f in self.families]
+        for variant in follow_each(model, frame, parameters, ranking):
             own = measured
             if not variant.as_measured:
                 own = [self._measured(model, f, variant.states) for f in self.families]

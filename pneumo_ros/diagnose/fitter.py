@@ -111,8 +111,12 @@ class Fitter:
         return self._at_best(model) - self._likelihood(larger, values)
 
     def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
-        """Log likelihood of the training evidence and of the priors of the parameters except `fixed`."""
-        return log_likelihood(self.train, self.train.residual(model)) - strain(self.known(model, fixed).offset(model))
+        """Log likelihood of the training evidence and of the priors of the parameters except `fixed`.
+
+        Residuals count in units of the noise that the model itself amplifies.
+        """
+        residual = self.train.residual(model) * self.train.noise / self.train.noise_of(model)
+        return log_likelihood(self.train, residual) - strain(self.known(model, fixed).offset(model))
 
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence; the laws of `bent` (default: all added) are free in shape."""

@@ -1,7 +1,8 @@
 """The states a model claims along the measured motion, corrected for the model's sensor effects."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,18 @@ def frame_of(run: Run, force_driven: bool) -> Frame:
     """Measured position, smoothed velocity and measured pressures; the velocity at rest is exactly 0."""
     states = measured_frame(run, force_driven)
     states[resting(run), 1] = 0.0
+    return Frame(run, states)
+
+
+def noisier(frame: Frame) -> Frame:
+    """The frame of the run with the noise of its sensors added once more; what rests still rests."""
+    run, draw = frame.run, np.random.default_rng(0)
+    again: dict[str, Any] = {
+        name.rpartition("_")[0]: signal + draw.normal(0.0, run.noise[name], len(signal))
+        for name, signal in run.signals.items()
+    }
+    states = measured_frame(replace(run, **again), run.force_driven)
+    states[frame.states[:, 1] == 0.0, 1] = 0.0
     return Frame(run, states)
 
 
