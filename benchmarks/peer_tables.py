@@ -7,12 +7,13 @@ from typing import Any
 from blind_tables import rate
 
 Result = dict[str, Any]
-FIRST, WIDTH = 50, 38
+FIRST, WIDTH = 52, 38
 
 
 def line(result: Result) -> str:
     """One result in a line."""
-    return f"{machine(result)}: {result['method']} names {', '.join(result['named']) or 'nothing'}; {cell(result)}"
+    names = ", ".join(result["named"]) or "nothing"
+    return f"{machine(result)}: {result['method']} names {names}; {result['wall']:.0f} s"
 
 
 def machine(result: Result) -> str:
