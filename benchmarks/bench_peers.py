@@ -83,7 +83,8 @@ def main() -> None:
     run(options, wanted)
     print(f"{os.cpu_count()} processors, {options.segments} segments per fit by simulation")
     results = [one for one in stored(options) if one["method"] in wanted]
-    print(peer_tables.table(results, wanted) if results else "no results yet")
+    shown = [method for method in wanted if any(one["method"] == method for one in results)]
+    print(peer_tables.table(results, shown) if results else "no results yet")
 
 
 if __name__ == "__main__":

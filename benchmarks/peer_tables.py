@@ -7,7 +7,7 @@ from typing import Any
 from blind_tables import rate
 
 Result = dict[str, Any]
-FIRST, WIDTH = 52, 38
+FIRST, WIDTH = 56, 38
 
 
 def line(result: Result) -> str:
