@@ -24,6 +24,7 @@ REPORT = ["plotly>=5"]  # the pages that --report writes
 FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
 WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, and pneumo view
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
+PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
 BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
@@ -75,6 +76,7 @@ setup(
         "figures": FIGURES,
         "workbench": WORKBENCH,
         "dask": DASK,
+        "peers": PEERS,
         "test": TEST,
         "dev": REPORT + FIGURES + WORKBENCH + DASK + TEST + DEV + BUILD,
     },

@@ -37,3 +37,42 @@ def test_a_machine_and_its_healthy_partner_are_recorded_alike(monkeypatch: pytes
         for kind, partner in blind_case.PARTNER.items():
             assert blind_case.drawn_excitation(kind, seed) == blind_case.drawn_excitation(partner, seed)
     assert len({blind_case.drawn_excitation("single", seed) for seed in range(60)}) == 7  # all but the usual one
+
+
+def test_every_effect_that_shows_in_motion_has_a_term_in_the_library_of_pysindy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An effect without a term could never be named, which would say nothing about the method."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    from peer_terms import TERMS
+
+    from pneumo_ros.diagnose.hypothesis import missing
+    from pneumo_ros.plant import load_model
+
+    named = {term.effect for term in TERMS}
+    assert set(missing(load_model("axis"))) - named == {"dwell_time_breakaway"}  # it acts at rest
+    assert named <= set(missing(load_model("axis")))
+
+
+def test_results_of_other_methods_belong_to_all_their_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results are stored under a hash of these files; the two others run the methods and print."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import peer_case
+
+    files = {name for names in peer_case.OWN_FILES.values() for name in names}
+    every = {path.name for path in (ROOT / "benchmarks").glob("peer_*.py")}
+    assert every - files == {"peer_case.py", "peer_tables.py"}
+
+
+def test_a_method_is_right_if_it_names_the_hidden_effect_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import peer_tables
+
+    machine = {"seed": 1, "strength": 0.5, "excitation": "steps", "hidden": ["line_delay:volume"], "wall": 2.0}
+    names = {"best": ["line_delay"], "fair": ["line_delay", "backlash"], "poor": ["backlash", "line_delay"], "mute": []}
+    results = [{**machine, "method": method, "named": named} for method, named in names.items()]
+    assert [peer_tables.first_right(one) for one in results] == [True, True, False, False]
+    assert [peer_tables.alone_right(one) for one in results] == [True, False, False, False]
+    printed = peer_tables.table(results, list(names))
+    assert "named first, rightly" in printed
+    assert "line_delay +1 2 s" in printed
