@@ -14,23 +14,17 @@ other code.
 """
 
 import argparse
-import json
 import os
-import subprocess
 import sys
-import time
 from collections import Counter
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import blind_figures as figures
 import blind_tables as tables
-from blind_case import KINDS, PARTNER, ROOT, code_hash, drawn_excitation, drawn_strength
+from blind_case import KINDS, PARTNER, code_hash, drawn_excitation, drawn_strength
+from resuming import add_options, kept, run_all
 from rig.excitation import EXCITATIONS
-
-from pneumo_ros.sweep import Pool, open_pool, sweep
 
 Job = tuple[str, int, float, str]  # kind, seed, strength, excitation
 Key = tuple[str, str, int, float, str]  # code and job
@@ -45,10 +39,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--kind", choices=(*KINDS, "all"), default="all")
     parser.add_argument("--strength", type=float, help="share of full strength, for all; else drawn from 0.2 to 1")
     parser.add_argument("--excitation", choices=(*EXCITATIONS, "drawn"), default="usual", help="what is recorded")
-    parser.add_argument("--jobs", type=int, default=2, help="cases side by side (default 2)")
-    parser.add_argument("--executor", metavar="NAME", help="such as dask=tcp://HOST:PORT, in place of --jobs")
-    parser.add_argument("--json", type=Path, default=ROOT / ".cache" / "blind.jsonl", metavar="FILE", help="results")
-    parser.add_argument("--code", help="print results of this code (default: the present code)")
+    add_options(parser, "blind.jsonl", jobs=2)
     return parser.parse_args()
 
 
@@ -70,54 +61,11 @@ def wanted(options: argparse.Namespace) -> list[Job]:
 
 
 def stored(path: Path) -> dict[Key, dict[str, Any]]:
-    """Results in the file; an incomplete last line is skipped."""
-    found: dict[Key, dict[str, Any]] = {}
-    for line in path.read_text().splitlines() if path.exists() else ():
-        try:
-            one = json.loads(line)
-        except json.JSONDecodeError:
-            continue
-        found[one["code"], one["kind"], one["seed"], one["strength"], one.get("excitation", "usual")] = one
-    return found
-
-
-def run_case(*job: object) -> tuple[str, str]:
-    """Output and error output of one case, in a process of its own."""
-    paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths)), "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, str(CASE), *map(str, job)]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
-    return done.stdout, "" if done.returncode == 0 else done.stderr or f"ended by signal {-done.returncode}"
-
-
-def make_pool(options: argparse.Namespace) -> Pool:
-    """Threads, because each case has its own process anyway; or the executor of --executor."""
-    if options.executor:
-        return open_pool(options.executor)
-    return Pool(lambda: ThreadPoolExecutor(options.jobs), options.jobs)
-
-
-def run_all(jobs: Sequence[Job], options: argparse.Namespace) -> list[str]:
-    """Run cases and append their results to the file; returns what failed."""
-    broken, begun = [], time.monotonic()
-    options.json.parent.mkdir(parents=True, exist_ok=True)
-    names = {" ".join(map(str, job)): job for job in jobs}
-    with options.json.open("a") as file, make_pool(options) as pool:
-        try:
-            for count, done in enumerate(sweep(run_case, names, pool), 1):
-                job, (out, problem) = names[done.key], done.result
-                if problem:
-                    broken.append(f"{' '.join(map(str, job))}: {problem.strip().splitlines()[-1]}")
-                file.write("" if problem else out)
-                file.flush()
-                left = (time.monotonic() - begun) * (len(jobs) / count - 1.0) / 60.0
-                text = "failed" if problem else summary(json.loads(out))
-                print(
-                    f"{count}/{len(jobs)}, {left:.0f} min left: {job[0]} {job[1]}: {text}", file=sys.stderr, flush=True
-                )
-        except KeyboardInterrupt:
-            print("interrupted; the same command goes on from here", file=sys.stderr)
-    return broken
+    """Results in the file."""
+    return {
+        (one["code"], one["kind"], one["seed"], one["strength"], one.get("excitation", "usual")): one
+        for one in kept(path)
+    }
 
 
 def summary(result: dict[str, Any]) -> str:
@@ -132,7 +80,7 @@ def main() -> int:
     """Run the cases that have no result yet, print; 1 if a case failed."""
     options, code = arguments(), code_hash()
     known = stored(options.json)
-    broken = run_all([job for job in wanted(options) if (code, *job) not in known], options)
+    broken = run_all(CASE, [job for job in wanted(options) if (code, *job) not in known], options, summary)
     results = [one for key, one in stored(options.json).items() if key[0] == (options.code or code)]
     print(f"code {options.code or code}, {os.cpu_count()} processors, {options.jobs} cases at a time")
     if results:

@@ -12,6 +12,7 @@ import resource
 import sys
 import tempfile
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -87,21 +88,35 @@ def drawn_excitation(kind: str, seed: int) -> str:
 
 def recorded(case: Any, excitation: str) -> tuple[list[Any], list[Any]]:
     """The training and the held-out runs of a case, written as bags and read again."""
+    from rig.case import runs_for
+
+    return divided(taken(case, runs_for(case, excitation)))
+
+
+def taken(case: Any, names: Sequence[str], **logger: float) -> dict[str, Any]:
+    """The named runs of a case, written as bags and read again; `logger` as in `rig.sensors.Logger`."""
     from rig import bags
     from rig import case as rig_case
-    from rig.excitation import held_out
+    from rig.sensors import Logger
 
     from pneumo_ros.records import read_recording
     from pneumo_ros.runs.run import make_run
 
-    names = rig_case.runs_for(case, excitation)
-    train, held = list[Any](), list[Any]()
+    found = {}
     with tempfile.TemporaryDirectory() as folder:
-        for run in rig_case.make_runs(case, names, step=STEP):
+        for run in rig_case.make_runs(case, names, STEP, Logger(**logger)):
             path = Path(folder) / run.name
             bags.write(path, run, rig_case.epoch(case.seed))
-            (held if held_out(run.name, names) else train).append(make_run(read_recording(path)))
-    return train, held
+            found[run.name] = make_run(read_recording(path))
+    return found
+
+
+def divided(runs: Mapping[str, Any]) -> tuple[list[Any], list[Any]]:
+    """All runs of a case, those to fit and those that are held out."""
+    from rig.excitation import held_out
+
+    held = [name for name in runs if held_out(name, tuple(runs))]
+    return [run for name, run in runs.items() if name not in held], [runs[name] for name in held]
 
 
 def found(outcome: Any) -> dict[str, Any]:

@@ -2,8 +2,13 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+
+from pneumo_ros.plant import Model, load_model
+from pneumo_ros.runs.run import PARTS, Run
 
 ROOT = Path(__file__).parents[1]
 
@@ -76,3 +81,79 @@ def test_a_method_is_right_if_it_names_the_hidden_effect_first(monkeypatch: pyte
     printed = peer_tables.table(results, list(names))
     assert "named first, rightly" in printed
     assert "line_delay +1 2 s" in printed
+
+
+SIDED = (
+    "valve_null_offset", "leakage_to_atmosphere", "dead_volume", "spring_load", "constant_load", "choked_flow",
+    "asymmetric_viscous_friction", "position_dependent_friction", "supply_pressure_droop", "valve_internal_leakage",
+)  # fmt: skip
+VALUES = {"position_dependent_friction.knot_09": 0.3, "leakage_to_atmosphere.conductance_b": 4e-10}
+
+
+def moved(model: Model, sign: float = 1.0, pressures: tuple[float, float] = (2e5, 2.5e5)) -> Any:
+    """Position and both pressures (samples, 3) under a voltage that changes direction."""
+    volts = sign * 2.0 * np.sign(np.sin(np.arange(1500) * 4e-3))
+    state = model.state(y=sign * 0.1, p_a=pressures[0], p_b=pressures[1])
+    return model.simulate(volts, state)[:, [model.states.index(name) for name in ("y", "p_a", "p_b")]]
+
+
+@pytest.fixture(scope="module")
+def sided() -> Model:
+    """A machine whose effects tell left from right, and small from large."""
+    model = load_model("axis")
+    return model.with_effects([*model.effects, *SIDED], VALUES)
+
+
+def test_a_mirrored_machine_moves_the_other_way(sided: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    from invariance_machines import mirrored_model
+
+    here, there = moved(sided), moved(mirrored_model(sided), -1.0, (2.5e5, 2e5))
+    assert np.ptp(here[:, 0]) > 0.05
+    assert there[:, [0, 2, 1]] * [-1.0, 1.0, 1.0] == pytest.approx(here, rel=1e-6)
+
+
+@pytest.mark.parametrize(("area", "pressure"), [(2.0, 1.0), (1.0, 2.0)])
+def test_a_scaled_machine_moves_alike(
+    sided: Model, area: float, pressure: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    from invariance_machines import scaled_model
+
+    larger = moved(scaled_model(sided, area, pressure), pressures=(2e5 * pressure, 2.5e5 * pressure))
+    assert larger / [1.0, pressure, pressure] == pytest.approx(moved(sided), rel=1e-6)
+
+
+def test_pieces_hold_the_whole_recording(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    from invariance_changes import Question, pieces
+
+    position, held = np.arange(9.0), np.arange(8.0 * PARTS)
+    run = Run("long", 1e-3, position, -position, 2.0 * position, held, position > 2.0, False)
+    first, second = pieces(Question(load_model("axis"), [run], [])).train
+    assert [len(first), len(second)] == [4, 5]
+    for name in ("position", "pressure_a", "pressure_b", "measured"):
+        assert np.array_equal(np.concatenate([getattr(first, name), getattr(second, name)]), getattr(run, name))
+    assert np.array_equal(first.input, held[: 3 * PARTS])
+    assert np.array_equal(second.input, held[4 * PARTS :])
+
+
+def test_a_rival_is_the_same_answer_and_another_verdict_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    from invariance_tables import same_answer, table
+
+    def result(change: str, verdict: str, *added: tuple[str, list[str], float]) -> dict[str, Any]:
+        effects = [{"effect": name, "group": group, "parameters": {"k": (size, 0.1)}} for name, group, size in added]
+        return {"seed": 3, "change": change, "verdict": verdict, "added": effects, "hidden": ["spring_load"]}
+
+    before = result("as recorded", "effects_found", ("spring_load", ["constant_load"], 1.0), ("backlash", [], 2.0))
+    after = result("pieces", "effects_found", ("backlash", [], 2.5), ("constant_load", [], 9.0))
+    other = result("mirrored", "unknown_effect", ("spring_load", [], 1.1), ("backlash", [], 2.0))
+    assert same_answer(before, after)
+    assert not same_answer(before, other)
+    assert not same_answer(before, result("larger", "effects_found", ("spring_load", [], 1.0)))
+    text = table([before, after, other])
+    assert re.search(r"^pieces +1/1 .* 0/1 ", text, re.MULTILINE)
+    assert re.search(r"^mirrored +0/1 .* 2/2 .* 3$", text, re.MULTILINE)
+    assert "[3 'mirrored'] spring_load: effects_found, " in text
+    assert "backlash.k by 1.8 intervals" in text

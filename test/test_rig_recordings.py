@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from rig import case, command, effects, excitation
 from rig.machine import WORN, Machine, rough_surface
+from rig.sensors import Logger
 from rosbags.highlevel import AnyReader
 
 pytestmark = pytest.mark.check  # they judge the independent rig, not the package
@@ -104,6 +105,26 @@ def test_noise_is_what_the_rig_promises(healthy):
     assert run.position / 1e-5 == pytest.approx(np.round(run.position / 1e-5), abs=1e-6)
     codes = run.pressure_a * 2**16 / 1e6
     assert np.array_equal(codes, np.round(codes))
+
+
+def test_another_logger_sees_the_same_motion(healthy):
+    usual, built = healthy["train_creep"], effects.build(11)
+    slow, fast, quiet = (
+        case.make_run(built, "train_creep", logger=logger) for logger in (Logger(250), Logger(2000), Logger(noise=0.5))
+    )
+    assert np.array_equal(slow.position, usual.position[::4])
+    assert np.array_equal(slow.stamps, usual.stamps[::4])
+    assert np.array_equal(slow.voltage[slow.command_index], usual.voltage[usual.command_index])
+    assert np.median(np.diff(fast.stamps)) == pytest.approx(5e5, rel=0.01)
+    assert len(fast.position) == 2 * len(usual.position) == 2 * len(fast.voltage)
+    noise = quiet.pressure_a - quiet.truth[:, 2]
+    assert noise.std() == pytest.approx(150.0, rel=0.03)
+
+
+def test_a_faster_logger_adds_readings_in_between():
+    built = effects.build(11)  # a constant voltage, which no reading changes
+    usual, fast = (case.make_run(built, "constant_p7000", logger=Logger(rate)) for rate in (1000, 2000))
+    assert fast.truth[::2] == pytest.approx(usual.truth, rel=1e-4, abs=1e-6)
 
 
 def test_clock_jitters_by_10_us_and_never_runs_back(healthy):

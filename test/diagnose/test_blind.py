@@ -1,42 +1,19 @@
 """Short recordings of rig machines with a hidden effect; benchmarks/bench_blind.py has many."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from rig import bags, case, effects
+from diagnose.recording import recordings_of
 
 from pneumo_ros.command.demo.revealing import judge
 from pneumo_ros.diagnose.diagnosis import RULER, diagnose
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import load_model
-from pneumo_ros.records import read_recording
-from pneumo_ros.runs.run import PARTS, Run, make_run
-
-STEP = 4e-5  # s, of the rig
-SAMPLES = 12_000  # of each run
-TRAIN, HELD = ("train_steps", "train_slow"), ("holdout_steps",)
-
-
-def shortened(run: Run) -> Run:
-    """The first seconds of a run."""
-    n = SAMPLES
-    assert run.pressure_a is not None
-    assert run.pressure_b is not None
-    return replace(
-        run, position=run.position[:n], pressure_a=run.pressure_a[:n], pressure_b=run.pressure_b[:n],
-        input=run.input[: (n - 1) * PARTS], measured=run.measured[:n],
-    )  # fmt: skip
 
 
 def outcome_of(folder: Path, seed: int, *hidden: str) -> Outcome:
     """Record the worn machine of `seed` that hides these effects, and diagnose the recordings."""
-    machine = effects.build(seed, [effects.parse(text) for text in hidden])
-    runs = {}
-    for run in case.make_runs(machine, (*TRAIN, *HELD), STEP):
-        bags.write(folder / run.name, run, case.epoch(seed))
-        runs[run.name] = shortened(make_run(read_recording(folder / run.name)))
-    return diagnose(load_model("axis"), [runs[name] for name in TRAIN], [runs[name] for name in HELD])
+    return diagnose(load_model("axis"), *recordings_of(folder, seed, *hidden))
 
 
 @pytest.mark.check

@@ -10,7 +10,7 @@ import numpy as np
 from . import bags, loop
 from .excitation import EXCITATIONS, RUNS, programme, run_rng
 from .machine import SMOOTH, Machine, Roughness, rough_surface
-from .sensors import Run, position_noise, record
+from .sensors import USUAL, Logger, Run, position_noise, record
 
 _SETTLING = 1000  # samples of closed valve before a recording starts
 
@@ -31,22 +31,26 @@ def roughness(case: Case, name: str, samples: int) -> Roughness:
     return rough_surface(np.random.default_rng([case.seed, 2]), run_rng(case.seed + 1, name), samples)
 
 
-def make_run(case: Case, name: str, step: float = loop.STEP) -> Run:
+def make_run(case: Case, name: str, step: float = loop.STEP, logger: Logger = USUAL) -> Run:
     """Simulate and record the run `name` of a case; the same case and name give the same numbers. `step` [s]."""
     rng = run_rng(case.seed, name)
     plan = programme(name, rng)
-    n, m = len(plan.voltage), case.machine
-    rough, noise = roughness(case, name, n), position_noise(rng, n)
+    n, m, finer = len(plan.voltage), case.machine, logger.finer
+    rough, noise = roughness(case, name, n), position_noise(rng, n * finer, logger.noise)
     x = loop.rest(m, plan.position, plan.pressure)
     x = loop.run(m, SMOOTH, x, np.zeros(_SETTLING), step=step)[0][-1]
-    states, voltage = loop.run(m, rough, x, plan.voltage, plan.wanted, noise, plan.limit, step)
-    return record(name, m, states, voltage, noise, rng)
+    states, voltage = loop.run(m, rough, x, plan.voltage, plan.wanted, noise[::finer], plan.limit, step)
+    if finer > 1:  # the same motion again, as positions and guard act once a millisecond
+        states, _ = loop.run(m, rough, x, np.repeat(voltage, finer), step=step, sample=loop.SAMPLE / finer)
+    return record(name, m, states, voltage, noise, rng, logger)
 
 
-def make_runs(case: Case, names: Iterable[str] = RUNS, step: float = loop.STEP) -> Iterator[Run]:
+def make_runs(
+    case: Case, names: Iterable[str] = RUNS, step: float = loop.STEP, logger: Logger = USUAL
+) -> Iterator[Run]:
     """The named runs of a case, one after another."""
     for name in names:
-        yield make_run(case, name, step)
+        yield make_run(case, name, step, logger)
 
 
 def epoch(seed: int) -> int:

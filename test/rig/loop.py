@@ -62,10 +62,10 @@ def _slipped(plays: ndarray, m: Machine, u: float) -> float:
 
 
 @njit
-def _positioner(y: float, wanted: float, memory: ndarray) -> float:
+def _positioner(y: float, wanted: float, memory: ndarray, sample: float) -> float:
     """Voltage of a plain PI position loop with dead zone jump, as rigs have it for creeping [V]."""
     error = wanted - y
-    memory[0] = min(max(memory[0] + 40.0 * error * SAMPLE, -1.0), 1.0)
+    memory[0] = min(max(memory[0] + 40.0 * error * sample, -1.0), 1.0)
     effort = min(max(60.0 * error + memory[0], -2.0), 2.0)
     if abs(error) < 2e-5:
         return 0.0
@@ -92,28 +92,29 @@ def integrate(
     noise: ndarray,
     limit: float,
     steps: int,
+    sample: float,
     out: ndarray,
     applied: ndarray,
 ) -> None:
-    """Run len(voltage) samples of 1 ms in `steps` steps each, from x, which it advances.
+    """Run len(voltage) samples of `sample` s in `steps` steps each, from x, which it advances.
 
     voltage (n,) [V] is applied, or, where wanted (n,) [m] is not NaN, the positioner's output for it and the
     position read with noise (n,) [m]. Writes the state at the START of each sample to out (n, states), the voltage to
     applied (n,).
     """
-    h = SAMPLE / steps
+    h = sample / steps
     k, late, memory = np.empty((5, len(x))), np.zeros(3), np.zeros(2)
     past = np.zeros((3, 3 + int(max(m.line_delay, m.lag_delay) / h)))
     plays, delayed = np.zeros(_PLAYS), m.line_delay > 0.0 or m.lag_delay > 0.0
     for n in range(len(voltage)):
         u = voltage[n]
         if not np.isnan(wanted[n]):
-            u = _positioner(x[0] + noise[n], wanted[n], memory)
+            u = _positioner(x[0] + noise[n], wanted[n], memory, sample)
         u = _guarded(u, x[0], limit, memory)
         out[n], applied[n] = x, u
         command = _slipped(plays, m, u + m.null_offset)
         for i in range(steps):
-            t = n * SAMPLE + i * h
+            t = n * sample + i * h
             if delayed:
                 _recall(m, past, n * steps + i, h, late)
                 _remember(m, x, t, command, past, n * steps + i, 0.5)
@@ -150,17 +151,19 @@ def run(
     noise: ndarray | None = None,
     limit: float = np.inf,
     step: float = STEP,
+    sample: float = SAMPLE,
 ) -> tuple[ndarray, ndarray]:
-    """States (n, len(STATES)) at the start of each 1 ms sample, and voltages applied (n,) [V]; see `integrate`.
+    """States (n, len(STATES)) at the start of each sample, and voltages applied (n,) [V]; see `integrate`.
 
-    `x` (len(STATES),) is the state at the start, `limit` [m] where the voltage turns inwards; `step` [s] divides 1 ms.
+    `x` (len(STATES),) is the state at the start, `limit` [m] where the voltage turns inwards. A `sample` [s]
+    is divided into steps of about `step` [s].
     """
     n = len(voltage)
     wanted = np.full(n, np.nan) if wanted is None else wanted
     noise = np.zeros(n) if noise is None else noise
     out, applied = np.empty((n, len(STATES))), np.empty(n)
-    voltage, steps = np.array(voltage, dtype=float), round(SAMPLE / step)
-    integrate(packed(m), rough, x.copy(), voltage, wanted, noise, limit, steps, out, applied)
+    voltage, steps = np.array(voltage, dtype=float), round(sample / step)
+    integrate(packed(m), rough, x.copy(), voltage, wanted, noise, limit, steps, sample, out, applied)
     return out, applied
 
 
