@@ -76,7 +76,9 @@ class Signals:
             self.warn(f"{data.name}: it holds no finite effort; it is not used.")
             return None
         series = clocks.without_strays(finite(series, "effort", self.warn), self.warn)
-        series = clocks.beside(series, self.joints) if self._jumped else series.select(clocks.longest(series, self.warn))
+        series = (
+            clocks.beside(series, self.joints) if self._jumped else series.select(clocks.longest(series, self.warn))
+        )
         return increasing(series, self.warn)
 
     def commands(self) -> Series | None:

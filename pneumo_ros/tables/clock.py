@@ -34,7 +34,8 @@ class Clock:
 
     def words(self) -> str:
         """The steps in words: `median 5.2 ms, 90 % within 0.3 ms, longest gap 31 ms`."""
-        one, most, longest = (f"{1e3 * step:.3g} ms" for step in (self.median, self.within, self.longest))
+        jitter = self.within if self.within > 1e-6 * self.median else 0.0  # what is less is rounding
+        one, most, longest = (f"{1e3 * step:.3g} ms" for step in (self.median, jitter, self.longest))
         return f"median {one}, 90 % within {most}, longest gap {longest}"
 
 
@@ -48,20 +49,28 @@ def ordered(path: Path, time: Array, warn: Callable[[str], None]) -> Integers:
     if len(good) < len(time):
         warn(f"{len(time) - len(good)} of {len(time)} rows have no time; they are left out.")
     if len(good) < 2:
-        raise DataError(f"{path} has {len(good)} rows with a time; at least two are needed: name another column in its map")
+        raise DataError(
+            f"{path} has {len(good)} rows with a time; at least two are needed: name another column in its map"
+        )
     least, most = float(time[good].min()), float(time[good].max())
     if least == most:
         raise DataError(
-            f"{path}: the time is {least:g} s in all {len(good)} rows; name another column in its map, or, for rows at a "
+            f"{path}: the time is {least:g} s in all {len(good)} rows; name another column in its map, or, for rows "
+            "at a "
             "constant rate, type time: {rate: 1000}"
         )
     if max(abs(least), abs(most)) > _LATEST:
-        raise UsageError(f"{path}: the time reaches {most:g} s, more than a recording can hold; give its unit: ms, us or ns")
+        raise UsageError(
+            f"{path}: the time reaches {most:g} s, more than a recording can hold; give its unit: ms, us or ns"
+        )
     stamp = np.rint((time[good] - least) * 1e9).astype(np.int64)
     series = Series("time", stamp, stamp, {"row": good.astype(np.float64)})
     kept = clocks.without_strays(series, lambda _: None)
     if len(kept) < len(series):
-        warn(f"{len(series) - len(kept)} of {len(series)} rows have a time far from those around them; they are left out.")
+        warn(
+            f"{len(series) - len(kept)} of {len(series)} rows have a time far from those around them; they are left "
+            "out."
+        )
     kept = _longest_part(kept, warn)
     return _increasing(path, kept, warn).values["row"].astype(np.int64)
 
@@ -91,12 +100,14 @@ def _increasing(path: Path, series: Series, warn: Callable[[str], None]) -> Seri
     if repeated > _REPEATED * len(series):
         rate = len(series) / ((series.stamp[-1] - series.stamp[0]) * 1e-9)
         raise DataError(
-            f"{path}: {repeated} of {len(series)} rows repeat the time before them: it was written with too few digits. If "
+            f"{path}: {repeated} of {len(series)} rows repeat the time before them: it was written with too few "
+            "digits. If "
             f"the rows are evenly spaced, type time: {{rate: {rate:.6g}}} in the map"
         )
     if lost:
         warn(
-            f"{lost} of {len(series)} rows have a time that is not later than the one before ({repeated} repeat it); they "
+            f"{lost} of {len(series)} rows have a time that is not later than the one before ({repeated} repeat it); "
+            "they "
             "are left out."
         )
     return kept
@@ -111,7 +122,8 @@ def clock_of(path: Path, time: Array) -> Clock:
     found = Clock(median, float(np.percentile(off, 90.0)), float(steps.max()), even)
     if not 0.99 * SLOWEST <= found.rate <= 1.01 * FASTEST:
         raise DataError(
-            f"{path}: its rows are {median:.4g} s apart, {found.rate:.4g} Hz; {SLOWEST:g} Hz to {FASTEST:g} Hz are read. If "
+            f"{path}: its rows are {median:.4g} s apart, {found.rate:.4g} Hz; {SLOWEST:g} Hz to {FASTEST:g} Hz are "
+            "read. If "
             "the unit of time is wrong, mend it in the map: s, ms, us or ns; a slower recording shows no dynamics of a "
             "servo axis, a faster one must be thinned first"
         )

@@ -49,7 +49,9 @@ def parse_entry(where: str, given: Any) -> Entry:
         raise UsageError(f"{where}.gauge is {brief(gauge)}; it takes true or false")
     if bits is not None and (isinstance(bits, bool) or bits not in _BITS):
         raise UsageError(f"{where}.bits is {brief(bits)}; it takes {', '.join(map(str, _BITS))}")
-    scale, offset = (number(f"{where}.{key}", content.get(key, usual)) for key, usual in (("scale", 1.0), ("offset", 0.0)))
+    scale, offset = (
+        number(f"{where}.{key}", content.get(key, usual)) for key, usual in (("scale", 1.0), ("offset", 0.0))
+    )
     if scale == 0.0:
         raise UsageError(f"{where}.scale is 0; it takes a factor other than 0")
     unit, times = (_text(f"{where}.{key}", content.get(key)) for key in ("unit", "times"))
@@ -79,6 +81,8 @@ def _columns(where: str, content: Mapping[str, Any]) -> tuple[tuple[str, ...], t
     """The columns, and a gain for each."""
     if ("column" in content) == ("columns" in content):
         raise UsageError(f"{where} takes either column, or columns with gains, such as {EXAMPLE}")
+    names: Any
+    gains: Any
     if "column" in content:
         if "gains" in content:
             raise UsageError(f"{where}: gains belong to columns; for one column type scale")
@@ -87,7 +91,8 @@ def _columns(where: str, content: Mapping[str, Any]) -> tuple[tuple[str, ...], t
         names, gains = content["columns"], content.get("gains")
         if not isinstance(names, list) or not names or not isinstance(gains, list) or len(names) != len(gains):
             raise UsageError(
-                f"{where} takes as many gains as columns, such as {{columns: [current, bias], gains: [0.15, -1.0], unit: N}}"
+                f"{where} takes as many gains as columns, such as {{columns: [current, bias], gains: [0.15, -1.0], "
+                "unit: N}}"
             )
     if not all(isinstance(name, str) for name in names):
         wrong = next(name for name in names if not isinstance(name, str))

@@ -23,7 +23,8 @@ def check_rate(rate: float | None) -> None:
 def grid_of(time: Array, clock: Clock, rate: float | None) -> Array:
     """Times [s] of the recording: those of the rows, where their clock is even and no other `rate` [Hz] is asked for.
 
-    Else even steps from the first row on, at `rate` or at the rows' own rate. Raises DataError for more than MOST points.
+    Else even steps from the first row on, at `rate` or at the rows' own rate. Raises DataError for more than MOST
+    points.
     """
     if rate is None and clock.even:
         return time
@@ -33,9 +34,11 @@ def grid_of(time: Array, clock: Clock, rate: float | None) -> Array:
     step = span / float(counts.sum()) if rate is None else 1.0 / rate
     count = int(span / step + 1e-6) + 1
     if count > MOST:
-        raise DataError(f"{span:.4g} s at {1.0 / step:g} Hz are {count} samples; at most {MOST} are written: cut the table")
+        raise DataError(
+            f"{span:.4g} s at {1.0 / step:g} Hz are {count} samples; at most {MOST} are written: cut the table"
+        )
     grid: Array = time[0] + step * np.arange(count)
-    return grid[grid <= time[-1] + 1e-6 * step]
+    return np.asarray(grid[grid <= time[-1] + 1e-6 * step])
 
 
 def covered(grid: Array, time: Array, signals: Mapping[str, Array]) -> Array:

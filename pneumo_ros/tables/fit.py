@@ -24,7 +24,8 @@ def check_signals(table: Table, plan: Map, found: Mapped) -> None:
     there = f"the map has {', '.join(plan.signals) or 'no signals'}; {table.listed()}"
     if "position" not in found.signals:
         raise DataError(
-            f"{table.path}: no column is mapped to position, which every verb needs; type position: {{column: NAME, unit: "
+            f"{table.path}: no column is mapped to position, which every verb needs; type position: {{column: NAME, "
+            "unit: "
             f"mm}} in the section signals; {there}"
         )
     if not any(name in found.signals for name in _BEHAVIOUR):
@@ -42,7 +43,7 @@ def check_values(path: Path, signals: Mapping[str, Array], found: Mapped, warn: 
             raise DataError(f"{path}: {name} has no finite number where the clock is usable; leave it out of the map")
         if name in _PRESSURES:
             _check_pressure(path, name, finite, found, warn)
-        if len(finite) > 1 and finite.min() == finite.max() and name != "command":
+        if len(finite) > 1 and finite.min() == finite.max() and name in SIGNALS and name != "command":
             warn(f"{name} is {finite[0]:.4g} {found.units[name]} throughout: {_constant(name)}.")
 
 
@@ -51,14 +52,17 @@ def _check_pressure(path: Path, name: str, finite: Array, found: Mapped, warn: C
     low, share = float(finite.min()), float(np.mean(finite <= 0.0))
     if low > 0.0:
         return
-    said = f"{name} (column {found.origins[name]}) falls to {low:.4g} Pa absolute, in {100.0 * share:.2g} % of its samples"
+    said = (
+        f"{name} (column {found.origins[name]}) falls to {low:.4g} Pa absolute, in {100.0 * share:.2g} % of its samples"
+    )
     if share > _SEVERAL:
         raise DataError(
-            f"{path}: {said}; no pressure does. If it is measured against the atmosphere, type gauge: true; else check its "
+            f"{path}: {said}; no pressure does. If it is measured against the atmosphere, type gauge: true; else "
+            "check its "
             "unit, scale and offset in the map"
         )
     warn(f"{said}: its sensor drops out.")
 
 
 def _constant(name: str) -> str:
-    return "nothing moves" if name in ("position", "velocity") else f"is {SIGNALS[name].words if name in SIGNALS else name} connected?"
+    return "nothing moves" if name in ("position", "velocity") else "is its sensor connected?"

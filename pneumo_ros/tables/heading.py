@@ -5,7 +5,9 @@ import re
 from pneumo_ros.tables.units import find_unit
 
 # name (unit), name [unit], name {unit}, name <unit>, name / unit
-_BRACKETS = re.compile(r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\[(?P<b>[^\[\]]*)\]|\{(?P<c>[^{}]*)\}|<(?P<d>[^<>]*)>)\s*$")
+_BRACKETS = re.compile(
+    r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\[(?P<b>[^\[\]]*)\]|\{(?P<c>[^{}]*)\}|<(?P<d>[^<>]*)>)\s*$"
+)
 _SLASH = re.compile(r"^(?P<name>[^/]*[^/\s])\s*/\s*(?P<unit>[^/\s].*)$")
 _TAIL = re.compile(r"^(?P<name>.*[^_\s])[_\s](?P<unit>[A-Za-zµ%°]+)$")
 _LETTERS = ("A", "a")  # after an underscore they mean chamber a, as in p_A, and not amperes

@@ -64,7 +64,9 @@ def imported(table: Table, plan: Map, rate: float | None = None) -> Imported:
         raise DataError(f"{table.path}: its signals do not overlap in time; {_spans(time, used)}")
     notes += _dropped(signals) + _lost(grid, inside)
     if rate is not None and rate > 1.01 * clock.rate:
-        notes.append(f"{rate:g} Hz is more than the {clock.rate:.4g} Hz of the rows: the samples between them are interpolated.")
+        notes.append(
+            f"{rate:g} Hz is more than the {clock.rate:.4g} Hz of the rows: the samples between them are interpolated."
+        )
     even = {name: _at(grid, inside, laid(grid, time, values)) for name, values in used.items()}
     begin = float(inside[0]) if found.time[rows[0]] < 0.0 else 0.0
     if begin:
@@ -125,7 +127,8 @@ def _dropped(signals: Mapping[str, Array]) -> list[str]:
     """Sentences on samples without a number."""
     counts = {name: int(np.count_nonzero(~np.isfinite(values))) for name, values in signals.items()}
     return [
-        f"{count} of {len(signals[name])} samples of {name} are no finite numbers; they are left out, and short gaps bridged."
+        f"{count} of {len(signals[name])} samples of {name} are no finite numbers; they are left out, and short gaps "
+        "bridged."
         for name, count in counts.items()
         if count
     ]
@@ -142,5 +145,3 @@ def _spans(time: Array, signals: Mapping[str, Array]) -> str:
     """The time span of each signal, in words."""
     spans = {name: time[np.isfinite(values)] for name, values in signals.items()}
     return ", ".join(f"{name} {span[0]:.3f} to {span[-1]:.3f} s" for name, span in spans.items())
-
-

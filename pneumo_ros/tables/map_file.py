@@ -52,7 +52,9 @@ def load_map(path: str | Path) -> Map:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
-        raise UsageError(f"cannot read the map {path}: {reason}; type: pneumo import TABLE --guess --map {path}") from error
+        raise UsageError(
+            f"cannot read the map {path}: {reason}; type: pneumo import TABLE --guess --map {path}"
+        ) from error
     try:
         return parse_map(load_yaml(text))
     except UsageError as error:
@@ -119,7 +121,9 @@ def _check_other(name: str) -> None:
     if not name.replace("_", "a").isalnum() or not name.isascii() or not name[0].isalpha():
         raise UsageError(f"others.{name}: a name has letters, digits and underscores, and begins with a letter")
     if contract.split(f"{OTHERS}/{name}") is not None or name in SIGNALS:
-        raise UsageError(f"others.{name}: this name has a meaning of its own; put it into signals, or name it otherwise")
+        raise UsageError(
+            f"others.{name}: this name has a meaning of its own; put it into signals, or name it otherwise"
+        )
 
 
 def _check_unit(name: str, entry: Entry) -> None:
@@ -150,7 +154,9 @@ def _constant(name: str, given: Any) -> float:
         unit = unit_of(str(given["unit"]))
         found = unit.factor * number(f"constants.{name}.value", given["value"]) + unit.shift
     else:
-        raise UsageError(f"constants.{name} is {brief(given)}; it takes a number in SI units, or {{value: 1013, unit: mbar}}")
+        raise UsageError(
+            f"constants.{name} is {brief(given)}; it takes a number in SI units, or {{value: 1013, unit: mbar}}"
+        )
     if name == ATMOSPHERE and not 3e4 <= found <= 1.2e5:
         raise UsageError(f"constants.{name} is {found:g} Pa; the atmosphere has 3e4 to 1.2e5 Pa; give its unit")
     return found

@@ -36,7 +36,7 @@ def mapped(table: Table, plan: Map) -> Mapped:
     a number.
     """
     signals, units, origins = dict[str, Array](), dict[str, str](), dict[str, str]()
-    for name, entry in (plan.signals | plan.others).items():
+    for name, entry in {**plan.signals, **plan.others}.items():
         columns = [table.column(given) for given in entry.columns]
         unit = _unit(table, name, entry, columns[0])
         values = _combined(table, plan, name, entry, columns)
@@ -45,7 +45,8 @@ def mapped(table: Table, plan: Map) -> Mapped:
             values = values + plan.atmosphere
         if not np.isfinite(values).any():
             raise DataError(
-                f"{table.path}: {name} (column {', '.join(columns)}) holds no finite number; leave it out of the map, or "
+                f"{table.path}: {name} (column {', '.join(columns)}) holds no finite number; leave it out of the "
+                "map, or "
                 f"name another column; {table.listed()}"
             )
         signals[name], units[name] = np.where(np.isfinite(values), values, np.nan), SI[unit.dimension]
@@ -61,7 +62,9 @@ def _time(table: Table, plan: Map) -> Array:
     column = table.column(timing.column or "")
     unit = timing.unit or heading(column)[1]
     if unit is None or unit_of(unit).dimension != "time":
-        raise UsageError(f"{table.path.name}: column '{column}' has no unit of time; type time: {{column: '{column}', unit: s}}")
+        raise UsageError(
+            f"{table.path.name}: column '{column}' has no unit of time; type time: {{column: '{column}', unit: s}}"
+        )
     return np.asarray(table.columns[column] * unit_of(unit).factor)
 
 
@@ -72,12 +75,19 @@ def _unit(table: Table, name: str, entry: Entry, column: str) -> Unit:
     if text is None and name not in SIGNALS:
         return unit_of("1")
     if text is None or unit_of(text).dimension not in known:
-        said = f"the unit {text} of its heading is none of {' or '.join(known)}" if text else "neither map nor heading has a unit"
-        raise UsageError(f"{table.path.name}: signals.{name}: {said}; type unit: {SI[known[0]]}, or another of {' or '.join(known)}")
+        said = (
+            f"the unit {text} of its heading is none of {' or '.join(known)}"
+            if text
+            else "neither map nor heading has a unit"
+        )
+        raise UsageError(
+            f"{table.path.name}: signals.{name}: {said}; type unit: {SI[known[0]]}, or another of {' or '.join(known)}"
+        )
     unit = unit_of(text)
     if entry.unit is None and entry.gauge is not None and unit.gauge is not None and unit.gauge != entry.gauge:
         raise UsageError(
-            f"{table.path.name}: signals.{name}: gauge: {str(entry.gauge).lower()} contradicts the heading '{column}'; to "
+            f"{table.path.name}: signals.{name}: gauge: {str(entry.gauge).lower()} contradicts the heading "
+            f"'{column}'; to "
             f"overrule the heading give the unit too, such as unit: {'psi' if 'psi' in text else 'bar'}"
         )
     return unit

@@ -28,7 +28,7 @@ _SIGNS: dict[bytes, Reader] = {
 _ELSEWHERE = {
     ".xlsx": "save the sheet as CSV", ".xls": "save the sheet as CSV", ".ods": "save the sheet as CSV",
     ".tdms": "export it as CSV", ".h5": "write its columns to CSV or NPZ", ".zip": "unpack it: unzip FILE",
-    ".mcap": "it is a recording, which every other verb reads", ".db3": "it is a recording, which every other verb reads",
+    ".mcap": "it is a recording already", ".db3": "it is a recording already",
     ".bag": "convert it to rosbag2: rosbags-convert --src FILE --dst FOLDER", ".pkl": "write its columns to CSV or NPZ",
 }  # fmt: skip
 
@@ -43,7 +43,9 @@ def read_table(path: str | Path) -> Table:
         raise UsageError(f"{file} is a folder; name the tables in it: {file}/*")
     kind = ending(file)
     if kind in _ELSEWHERE:
-        raise UsageError(f"{file}: {kind} is not read; {_ELSEWHERE[kind]}. Read are: {', '.join(READERS)}, each also .gz")
+        raise UsageError(
+            f"{file}: {kind} is not read; {_ELSEWHERE[kind]}. Read are: {', '.join(READERS)}, each also .gz"
+        )
     data = content_of(file)
     for sign, reader in _SIGNS.items():
         if data.startswith(sign):

@@ -40,7 +40,9 @@ class Table:
             if len(fitting) == 1:
                 return fitting[0]
             if fitting:
-                raise UsageError(f"{self.path.name}: column '{given}' may be {' or '.join(fitting)}; give the whole name")
+                raise UsageError(
+                    f"{self.path.name}: column '{given}' may be {' or '.join(fitting)}; give the whole name"
+                )
         if given in self.texts:
             raise UsageError(f"{self.path.name}: column '{given}' holds text, not numbers; {self.listed()}")
         raise UsageError(f"{self.path.name}: {unknown_name('column', given, self.columns)}; {self.listed()}")

@@ -62,7 +62,9 @@ def _names(header: list[str], form: Form, width: int) -> list[str]:
     found = [cells for line in header if (cells := _words(line, form, width)) is not None]
     names = found[-1] if found else [f"column {k + 1}" for k in range(width)]
     if len(found) > 1 and _are_units(names):
-        names = [f"{name} ({unit.strip('()[]')})" if unit else name for name, unit in zip(found[-2], names, strict=True)]
+        names = [
+            f"{name} ({unit.strip('()[]')})" if unit else name for name, unit in zip(found[-2], names, strict=True)
+        ]
     names = [name or f"column {k + 1}" for k, name in enumerate(names)]
     seen = Counter[str]()
     for k, name in enumerate(names):
@@ -72,7 +74,7 @@ def _names(header: list[str], form: Form, width: int) -> list[str]:
 
 
 def _words(line: str, form: Form, width: int) -> list[str] | None:
-    """The cells of a header line, which may be a comment and cut otherwise than the numbers; None if they do not fit."""
+    """The cells of a header line, a comment or not, cut as the numbers or otherwise; None where they do not fit."""
     stripped = line.strip()
     mark = next((mark for mark in COMMENTS if stripped.startswith(mark)), "")
     for one in (form, *text.FORMS):

@@ -39,16 +39,19 @@ def read_json(path: Path, data: bytes) -> Table:
 
 def read_json_lines(path: Path, data: bytes) -> Table:
     """The table of one JSON object a line. Raises DataError, naming the line, for anything else."""
-    records = []
+    lines = enumerate(decoded(data).split("\n"), start=1)
+    return table_of(path, _columns(path, [_record(path, number, line) for number, line in lines if line.strip()]))
+
+
+def _record(path: Path, number: int, line: str) -> Mapping[str, Any]:
+    """The object in one line."""
     try:
-        for number, line in enumerate(decoded(data).splitlines(), start=1):
-            if line.strip():
-                records.append(json.loads(line))
-                if not isinstance(records[-1], Mapping):
-                    raise DataError("it is no JSON object")
-    except (ValueError, RecursionError, DataError) as error:
+        record = json.loads(line)
+    except (ValueError, RecursionError) as error:
         raise DataError(f"cannot read {path}, line {number}: {str(error)[:200]}") from error
-    return table_of(path, _columns(path, records))
+    if not isinstance(record, Mapping):
+        raise DataError(f'cannot read {path}, line {number}: it is no JSON object, such as {{"t": 0.1, "p": 2.5}}')
+    return record
 
 
 def _is_records(value: Any) -> bool:
