@@ -54,17 +54,18 @@ def covered(grid: Array, time: Array, signals: Mapping[str, Array]) -> Array:
     return grid[kept.values["value"].astype(np.int64)]
 
 
-def laid(grid: Array, time: Array, values: Array) -> Array:
+def laid(grid: Array, time: Array, values: Array, lowered: bool) -> Array:
     """A signal (n,) over `time` (n,) [s] at the times `grid` (m,): linear between finite samples.
 
-    Where the steps of `grid` are longer than those of the samples, what is too fast for it is filtered out first.
+    Where the rate may be `lowered`, and the steps of `grid` are longer than those of the samples, what is too fast for
+    it is filtered out first.
     """
     good = np.isfinite(values)
     time, values = time[good], values[good]
     if len(time) < 2 or len(grid) < 2:
         return np.full(len(grid), values[0])
     step, own = float(np.median(np.diff(grid))), float(np.median(np.diff(time)))
-    if step <= _SAME * own:
+    if not lowered or step <= _SAME * own:
         return np.asarray(np.interp(grid, time, values))
     from scipy.signal import resample_poly
 

@@ -45,16 +45,16 @@ class Guesses:
     complete: bool = field(default=True)  # a recording can be made of it
 
 
+@np.errstate(all="ignore")  # values near the largest double have no rates
 def guess(table: Table) -> Guesses:
     """What the columns of `table` most probably are."""
     time = guess_time(table)
-    usable = {
-        name: values
-        for name, values in table.columns.items()
-        if _moves(values) and (time is None or name != time.column)
-    }
+    rest = {name: values for name, values in table.columns.items() if time is None or name != time.column}
+    usable = {name: values for name, values in rest.items() if _moves(values)}
     slopes = _slopes(table, usable, time)
     scores = {(signal, name): points(signal, name) for signal in SIGNALS for name in usable}
+    switches = [name for name, values in rest.items() if name not in usable and _moves(values, 1)]
+    scores |= {("command", name): points("command", name) for name in switches}
     _add_pairs(scores, slopes)
     chosen = _assigned(scores)
     signals, doubts = dict[str, Guess](), list[str]()
@@ -68,10 +68,9 @@ def guess(table: Table) -> Guesses:
     return Guesses(time, signals, imposed, unused, (*missing, *doubts), not missing)
 
 
-def _moves(values: Array) -> bool:
-    """Whether a column is neither constant nor a switch."""
-    good = values[np.isfinite(values)]
-    return len(np.unique(good[:: max(len(good) // _LOOKED_AT, 1)])) > 2
+def _moves(values: Array, most: int = 2) -> bool:
+    """Whether a column has more than so many different values: a constant has one, a switch two."""
+    return len(np.unique(values[np.isfinite(values)])) > most
 
 
 def _slopes(table: Table, usable: dict[str, Array], time: TimeGuess | None) -> dict[tuple[str, str], float]:

@@ -47,7 +47,7 @@ _WORDS: dict[str, tuple[tuple[str, int], ...]] = {
         (r"\b(supply|bus|batt|battery|vin|load|curr|current|bias)\b|^input volt", -7),
     ),
     "reference": (
-        (_REFERENCE, 4), (r"\b(pos|position|stroke|angle)\b", 2),
+        (_REFERENCE, 4), (r"\b(pos|position|stroke|angle)\b", 1),
         (r"\b(curr|current|force|torque|pressure|speed|vel)\b", -7),
     ),
 }  # fmt: skip
@@ -65,6 +65,9 @@ def points(signal: str, column: str) -> int:
     if found is not None and found.dimension not in SIGNALS[signal].dimensions:
         return 0
     texts = {words_of(name), words_of(column)}
+    gas = (found is not None and found.dimension == "pressure") or any(re.search(_GAS, text) for text in texts)
+    if SIGNALS[signal].dimensions == ("pressure",) and not gas:  # a letter or number alone says nothing
+        return 0
     score = UNIT if found is not None and signal not in ("reference", "command", "supply_pressure") else 0
     for pattern, worth in _WORDS[signal]:
         if any(re.search(pattern, text) for text in texts):

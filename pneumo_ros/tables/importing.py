@@ -67,7 +67,7 @@ def imported(table: Table, plan: Map, rate: float | None = None) -> Imported:
         notes.append(
             f"{rate:g} Hz is more than the {clock.rate:.4g} Hz of the rows: the samples between them are interpolated."
         )
-    even = {name: _at(grid, inside, laid(grid, time, values)) for name, values in used.items()}
+    even = {name: _at(grid, inside, laid(grid, time, values, rate is not None)) for name, values in used.items()}
     begin = float(inside[0]) if found.time[rows[0]] < 0.0 else 0.0
     if begin:
         notes.append(f"the time begins at {begin:g} s; the recording begins at 0.")

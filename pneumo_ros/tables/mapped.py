@@ -29,6 +29,7 @@ class Mapped:
     origins: Mapping[str, str]
 
 
+@np.errstate(all="ignore")  # what leaves the doubles is no finite number, and said below
 def mapped(table: Table, plan: Map) -> Mapped:
     """The signals that `plan` finds in `table`.
 

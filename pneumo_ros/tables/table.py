@@ -1,6 +1,6 @@
 """A table as it was published: columns of numbers, and single values beside them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,7 +35,8 @@ class Table:
         """
         if given in self.columns:
             return given
-        for spelling in (str.strip, stem, lambda name: stem(name).lower()):
+        spellings: list[Callable[[str], str]] = [str.strip, stem, lambda name: stem(name).lower()]
+        for spelling in spellings if stem(given) == given.strip() else spellings[:1]:
             fitting = [name for name in self.columns if spelling(name) == spelling(given)]
             if len(fitting) == 1:
                 return fitting[0]

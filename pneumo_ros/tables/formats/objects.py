@@ -39,7 +39,10 @@ def read_json(path: Path, data: bytes) -> Table:
 
 def read_json_lines(path: Path, data: bytes) -> Table:
     """The table of one JSON object a line. Raises DataError, naming the line, for anything else."""
-    lines = enumerate(decoded(data).split("\n"), start=1)
+    try:
+        lines = enumerate(decoded(data).split("\n"), start=1)
+    except DataError as error:
+        raise DataError(f"cannot read {path}: {error}") from error
     return table_of(path, _columns(path, [_record(path, number, line) for number, line in lines if line.strip()]))
 
 
