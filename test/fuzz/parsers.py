@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import scipy.io
 import yaml
 from hypothesis import strategies as st
 
@@ -205,14 +204,6 @@ def _npz_table() -> bytes:
     return stream.getvalue()
 
 
-def _mat_table() -> bytes:
-    stream = io.BytesIO()
-    scipy.io.savemat(
-        stream, {"d": {"t": np.arange(40) * 0.002, "x": np.sin(np.arange(40))}, "F": np.cos(np.arange(40))}
-    )
-    return stream.getvalue()
-
-
 def _shipped(name: str) -> bytes:
     return files("pneumo_ros.config").joinpath(f"{name}.yaml").read_bytes()
 
@@ -249,7 +240,6 @@ PARSERS = (
     Parser("table as text", "run.csv", read_published, lambda: mutated([TABLE]) | texts.CSV_FILES, lambda: TABLE),
     Parser("table as JSON", "run.json", read_published, lambda: mutated([_json_table()]), _json_table),
     Parser("table as NPZ", "run.npz", read_published, lambda: mutated([_npz_table()]), _npz_table),
-    Parser("table as MAT", "run.mat", read_published, lambda: mutated([_mat_table()]), _mat_table),
     Parser("map of a table", "map.yaml", read_plan, *_of_text(PLAN.encode())),
     Parser("HTTP of the workbench", "request", asking.ask, asking.inputs, lambda: asking.requests()[0]),
     Parser("file of effects", "mine.py", read_effects, lambda: mutated([EFFECT.encode()], 3), lambda: EFFECT.encode()),

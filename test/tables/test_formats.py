@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 from hiding import environment_without
 from tables.making import FORMATS, columns, put, text
 
@@ -110,6 +111,21 @@ def test_what_cannot_be_read_is_named(file: str, data: bytes, sentence: str, tmp
     with pytest.raises(DataError, match=sentence) as error:
         read_table(path)
     assert str(path) in str(error.value)
+
+
+@pytest.mark.parametrize(("place", "value"), [(233, 239), (1345, 134)])
+def test_damaged_mat_files_end_in_words_even_where_their_reader_crashes(place: int, value: int, tmp_path: Path) -> None:
+    """Both end scipy's reader by a signal: version 1.17 crashes."""
+    spoilt = bytearray(FORMATS["run.mat"](columns(20)))
+    assert spoilt[place] != value
+    spoilt[place] = value
+    with pytest.raises(DataError, match=r"a\.mat"):
+        read_table(put(tmp_path, "a.mat", bytes(spoilt)))
+
+
+def test_any_name_of_a_variable_is_read(tmp_path: Path) -> None:
+    scipy.io.savemat(tmp_path / "a.mat", {"file": np.arange(5.0), "arr_0": np.arange(5.0) ** 2})
+    assert list(read_table(tmp_path / "a.mat").columns) == ["file", "arr_0"]
 
 
 def test_pickled_objects_are_refused(tmp_path: Path) -> None:

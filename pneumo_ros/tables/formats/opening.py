@@ -1,12 +1,14 @@
 """The bytes of a file, unpacked where it is packed with gzip, up to a bound."""
 
 import gzip
+import itertools
 import zlib
 from pathlib import Path
 
 from pneumo_ros.errors import DataError
 
 MOST = 1 << 30  # bytes of an unpacked table: about 10 h of ten signals at 1 kHz as text
+_PART = 1 << 20  # bytes read at once
 GZIP = b"\x1f\x8b"
 
 
@@ -16,7 +18,8 @@ def content_of(path: Path) -> bytes:
         with path.open("rb") as stream:
             packed = stream.read(2) == GZIP
         with gzip.open(path) if packed else path.open("rb") as stream:
-            data = stream.read(MOST + 1)
+            parts = itertools.takewhile(len, (stream.read(_PART) for _ in range(MOST // _PART + 1)))
+            data = b"".join(parts)
     except FileNotFoundError as error:
         raise DataError(f"there is no {path}") from error
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
