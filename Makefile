@@ -13,6 +13,7 @@
 # (~/.ros unless set otherwise); but as root on Debian, `make test` installs Chromium, to look at reports.
 #   PYTHON=python3.12       the Python to use; else the first suitable one is found
 #   RIG=path                recordings of a test rig, for the tests (../shared/rig)
+#   REAL=path               tables of real machines, for the tests: a folder for each map of benchmarks/real
 #   DEMO="--seconds 5"      further options of `pneumo demo`
 #   PYTEST="-k records -x"  further options of pytest
 
@@ -42,6 +43,11 @@ endif
 # Tests that read recordings of a rig find them here.
 ifneq ($(wildcard $(RIG)/healthy),)
 export PNEUMO_RIG := $(shell cd "$(RIG)" && pwd)
+endif
+
+# Tests that read tables of real machines find them here.
+ifneq ($(REAL),)
+export PNEUMO_REAL := $(shell cd "$(REAL)" && pwd)
 endif
 
 .PHONY: help demo test check slow bench fuzz chaos endurance supply pythons clean

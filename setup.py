@@ -23,6 +23,7 @@ ROS_WHEELS = [
 REPORT = ["plotly>=5"]  # the pages that --report writes
 FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
 WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, and pneumo view
+PARQUET = ["pyarrow>=14"]  # tables in Parquet, for pneumo import
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0"]
@@ -76,9 +77,10 @@ setup(
         "figures": FIGURES,
         "workbench": WORKBENCH,
         "dask": DASK,
+        "parquet": PARQUET,
         "peers": PEERS,
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + TEST + DEV + BUILD,
+        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + TEST + DEV + BUILD,
     },
     entry_points={
         "console_scripts": [

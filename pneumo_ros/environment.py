@@ -39,8 +39,9 @@ LIBRARIES = {
     "waitress": ("waitress", "python3-waitress"),
     "rich": ("rich", "python3-rich"),  # for pneumo view only
     "distributed": ("distributed", None),  # for sweeps over a Dask cluster only
+    "pyarrow": ("pyarrow", None),  # for tables in Parquet only
 }
-OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed")
+OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs
 

@@ -15,6 +15,7 @@ from pneumo_ros.nearest import unknown_name
 
 VERBS = (
     "demo",
+    "import",
     "simulate",
     "identify",
     "compare",

@@ -5,6 +5,8 @@ PRESSURE_A = "chamber_a/pressure"
 PRESSURE_B = "chamber_b/pressure"
 SUPPLY_PRESSURE = "supply/pressure"
 COMMAND = "valve/command"
+LOAD_CELL = "load_cell"  # measured rod force
+REFERENCE = "position/reference"
 SETPOINT = "setpoint"  # the controller's present setpoint, for plots
 DESCRIPTION = "description"
 
@@ -14,7 +16,8 @@ TYPES = {
     PRESSURE_B: "sensor_msgs/msg/FluidPressure",
     SUPPLY_PRESSURE: "sensor_msgs/msg/FluidPressure",
     COMMAND: "std_msgs/msg/Float64",
-    "position/reference": "std_msgs/msg/Float64",
+    LOAD_CELL: "sensor_msgs/msg/JointState",
+    REFERENCE: "std_msgs/msg/Float64",
     "joint_trajectory": "trajectory_msgs/msg/JointTrajectory",
     "joint_commands": "sensor_msgs/msg/JointState",
     SETPOINT: "sensor_msgs/msg/JointState",
@@ -28,7 +31,7 @@ LATCHED = frozenset({DESCRIPTION})  # published transient local
 JOINT = "piston"  # the default name
 
 # The topics of a recording of the axis; the others belong to its control.
-SIGNALS = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE, COMMAND, DESCRIPTION)
+SIGNALS = (JOINT_STATES, PRESSURE_A, PRESSURE_B, SUPPLY_PRESSURE, COMMAND, LOAD_CELL, DESCRIPTION)
 
 
 def split(topic: str) -> tuple[str, str] | None:

@@ -8,7 +8,8 @@ from pneumo_ros.records import contract
 
 NEEDED = (
     f"{contract.JOINT_STATES}, {contract.PRESSURE_A}, {contract.PRESSURE_B} and {contract.COMMAND}, "
-    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force"
+    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force, or with pressures or "
+    f"{contract.LOAD_CELL} for an imposed motion"
 )
 
 

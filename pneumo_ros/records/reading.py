@@ -7,7 +7,7 @@ import numpy as np
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import checks, contract
 from pneumo_ros.records.namespaces import NEEDED
-from pneumo_ros.records.recording import Array, Recording
+from pneumo_ros.records.recording import Array, Recording, imposed
 from pneumo_ros.records.series import COMMAND_LEAD, Series, held, resampled, seconds
 from pneumo_ros.records.signals import FEWEST, Signals
 from pneumo_ros.records.source import recording_name
@@ -22,8 +22,10 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
     signals = Signals(Path(path), namespace, joint_name)
     commands = signals.commands()
     pressure_a, pressure_b = signals.pressure(contract.PRESSURE_A), signals.pressure(contract.PRESSURE_B)
-    _require(signals, commands, pressure_a, pressure_b)
+    description, load_cell = signals.description(), signals.load_cell()
     pressures = [series for series in (pressure_a, pressure_b) if series]
+    if not (imposed(description) and commands is None and (pressures or load_cell)):
+        _require(signals, commands, pressure_a, pressure_b)
     joints = _cut(signals, pressures, commands)
     signals.warnings += checks.all_of(pressures, joints)
     joints = checks.outside_gaps(joints, pressures)
@@ -39,14 +41,15 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
         position=joints.values["position"],
         velocity=_optional(signals, joints, "velocity"),
         effort=_optional(signals, joints, "effort"),
-        pressure_a=_sampled(pressure_a, joints),
-        pressure_b=_sampled(pressure_b, joints),
-        supply_pressure=_sampled(signals.pressure(contract.SUPPLY_PRESSURE), joints),
+        pressure_a=_sampled(pressure_a, joints, "fluid_pressure"),
+        pressure_b=_sampled(pressure_b, joints, "fluid_pressure"),
+        supply_pressure=_sampled(signals.pressure(contract.SUPPLY_PRESSURE), joints, "fluid_pressure"),
         voltage=voltage,
         command_time=command_time,
         command=command,
-        description=signals.description(),
+        description=description,
         warnings=tuple(signals.warnings),
+        load_cell=_sampled(load_cell, joints, "effort"),
     )
 
 
@@ -117,9 +120,9 @@ def _optional(signals: Signals, joints: Series, name: str) -> Array | None:
     return None
 
 
-def _sampled(series: Series | None, joints: Series) -> Array | None:
-    """Pressure at the times of the joint states."""
-    return None if series is None else resampled(series, "fluid_pressure", joints.stamp)
+def _sampled(series: Series | None, joints: Series, name: str) -> Array | None:
+    """Value `name` of a sensor at the times of the joint states."""
+    return None if series is None else resampled(series, name, joints.stamp)
 
 
 def _zero_order_hold(

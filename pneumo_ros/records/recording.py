@@ -31,6 +31,7 @@ class Recording:
     command: Array | None  # (m,) [V]
     description: dict[str, Any] | None  # the last one in the recording
     warnings: tuple[str, ...]  # sentences about what is wrong with the recording and what was done about it
+    load_cell: Array | None = None  # [N], measured rod force, where the recording has it
 
     def __len__(self) -> int:
         return len(self.time)
@@ -49,3 +50,14 @@ class Recording:
     def force_driven(self) -> bool:
         """Whether this is an axis driven by a measured force, `effort`, and not by a valve."""
         return self.voltage is None and self.effort is not None
+
+    @property
+    def imposed(self) -> bool:
+        """Whether a test machine imposed the motion, as the map of an imported table says."""
+        return imposed(self.description)
+
+
+def imposed(description: dict[str, Any] | None) -> bool:
+    """Whether the description of a recording holds a map that says `motion: imposed`."""
+    plan = (description or {}).get("map")
+    return isinstance(plan, dict) and plan.get("motion") == "imposed"

@@ -65,6 +65,22 @@ class Signals:
             series = series.select(clocks.longest(series, self.warn))
         return increasing(series, self.warn)
 
+    def load_cell(self) -> Series | None:
+        """The measured rod force in increasing time; None where there is none, with a warning if it has no number."""
+        data = self._topics.get(contract.LOAD_CELL)
+        if data is None:
+            return None
+        joints = {joint for names in data["name"].tolist() for joint in names}
+        _, series = joint_series(data, self.joint_name if self.joint_name in joints else None)
+        if not np.isfinite(series.values["effort"]).any():
+            self.warn(f"{data.name}: it holds no finite effort; it is not used.")
+            return None
+        series = clocks.without_strays(finite(series, "effort", self.warn), self.warn)
+        series = (
+            clocks.beside(series, self.joints) if self._jumped else series.select(clocks.longest(series, self.warn))
+        )
+        return increasing(series, self.warn)
+
     def commands(self) -> Series | None:
         """Valve commands at their recorded times, on the clock of the joint states; None when there are none."""
         data = self._topics.get(contract.COMMAND)

@@ -20,6 +20,11 @@ def check_use(recording: Recording, force_driven: bool) -> None:
     A valve-driven axis needs two chamber pressures, in the range of absolute pressures in Pa.
     """
     _check_time(recording)
+    if recording.imposed and recording.effort is None and recording.voltage is None:
+        raise DataError(
+            f"{recording.name}: its motion is imposed, and it has neither a driving force nor a valve command, which "
+            "every model needs; if the force of a load cell drives it, map that to the signal force and import again"
+        )
     if force_driven and recording.effort is None:
         raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
     if not force_driven and (recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None):

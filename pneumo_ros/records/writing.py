@@ -2,6 +2,7 @@
 
 import json
 import time as clock
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,9 @@ def write_recording(
     pressure_b: Array | None = None,
     supply_pressure: Array | None = None,
     pressure_variance: float = 0.0,
+    load_cell: Array | None = None,
+    reference: Array | None = None,
+    others: Mapping[str, Array] | None = None,
     voltage: Array | None = None,
     command_time: Array | None = None,
     command: Array | None = None,
@@ -42,13 +46,15 @@ def write_recording(
     times to the nanosecond.
 
     `time` (n,) [s] increases; its zero is `start_ns` [ns] since the epoch (None: now). Signals (n,):
-    position [m], velocity [m/s], effort [N], absolute pressures [Pa] with one variance [Pa2]. The valve command is
+    position [m], velocity [m/s], effort [N], absolute pressures [Pa] with one variance [Pa2], the force of a load cell
+    [N], the wanted position [m], and `others`, signals by the names of their topics. The valve command is
     either `voltage` (n,) [V], held from each sample to the next and written when it changes, or `command_time` (m,)
     [s] with `command` (m,) [V]. Raises UsageError for arrays of other shapes, DataError when `path` exists.
     """
     signals = {
         "position": position, "velocity": velocity, "effort": effort, "pressure_a": pressure_a,
-        "pressure_b": pressure_b, "supply_pressure": supply_pressure, "voltage": voltage,
+        "pressure_b": pressure_b, "supply_pressure": supply_pressure, "load_cell": load_cell, "reference": reference,
+        "voltage": voltage, **(others or {}),
     }  # fmt: skip
     check_new(Path(path))
     _check(time, signals)
@@ -70,6 +76,11 @@ def write_recording(
     for name, values in gas.items():
         if values is not None:
             streams[name] = (stamp, encoding.pressures(stamp, values, pressure_variance))
+    if load_cell is not None:
+        measured = {"position": None, "velocity": None, "effort": load_cell}
+        streams[contract.LOAD_CELL] = (stamp, encoding.joint_states(stamp, joint_name, measured))
+    plain = {**({} if reference is None else {contract.REFERENCE: reference}), **(others or {})}
+    streams |= {name: (stamp, encoding.numbers(values)) for name, values in plain.items()}
     with whole_folder(path) as folder:
         _write(folder, namespace.strip("/"), streams)
 
@@ -77,7 +88,8 @@ def write_recording(
 def _write(folder: Path, namespace: str, streams: dict[str, Stream]) -> None:
     """All messages in the order of time; at equal times in the order of the streams."""
     names = {name: f"/{namespace}/{name}" if namespace else f"/{name}" for name in streams}
-    topics = [BagTopic(names[name], contract.TYPES[name], name in contract.LATCHED) for name in streams]
+    kinds = {name: contract.TYPES.get(name, contract.TYPES[contract.COMMAND]) for name in streams}
+    topics = [BagTopic(names[name], kind, name in contract.LATCHED) for name, kind in kinds.items()]
     messages = [(names[name], payload) for name, (_, payloads) in streams.items() for payload in payloads]
     times = np.concatenate([stamp for stamp, _ in streams.values()])
     with BagWriter(folder, topics) as writer:

@@ -1,5 +1,7 @@
 """The parsers: for each, the file it reads, the call, the conditions for any result, and the inputs."""
 
+import io
+import json
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -18,6 +20,12 @@ from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import Library
 from pneumo_ros.plant.machine_file import machine_text, parse_machine
 from pneumo_ros.records import Bag, read_recording, read_topics
+from pneumo_ros.tables.guess import guess
+from pneumo_ros.tables.guess_text import map_text
+from pneumo_ros.tables.importing import imported
+from pneumo_ros.tables.map_file import load_map, parse_map
+from pneumo_ros.tables.reading import read_table
+from pneumo_ros.yaml_text import load_yaml
 
 Inputs = Callable[[], st.SearchStrategy[bytes]]
 
@@ -122,6 +130,23 @@ def read_effects(path: Path) -> None:
     model.with_effects([*model.effects, *own])
 
 
+def read_published(path: Path) -> None:
+    """A table that is read has columns of one length; a guessed map is read, and imports finite numbers or says why."""
+    table = read_table(path)
+    assert len({len(values) for values in table.columns.values()}) == 1
+    found = guess(table)
+    if found.complete:
+        made = imported(table, parse_map(load_yaml(map_text(found, path.name))))
+        assert (np.diff(made.time) > 0.0).all()
+        assert all(np.isfinite(values).all() for values in made.signals.values())
+
+
+def read_plan(path: Path) -> None:
+    """A map that is read has only known signals, with a column each."""
+    plan = load_map(path)
+    assert all(entry.columns for entry in plan.signals.values())
+
+
 EFFECT = '''\
 from pneumo_ros.plant.effect import Effect, Parameter, State, sqrt
 
@@ -151,6 +176,32 @@ trials:
   - {name: sweep, sweep: {amplitude: 2.0, first: 0.2, last: 5.0, seconds: 10.0}, seconds: 10.0, anywhere: true}
 """
 CSV = b"time,voltage\n0,0\n0.5,1.5\n1.0;-2\n# remark\n1.5,3e0\n"
+
+
+TABLE = ("t (ms),x (mm),p1 (bar),p2,F\n" + "".join(
+    f"{2 * k},{k % 7 + 0.25 * k},{3 + k % 5},{300000 + k * k},{k % 3 - 1.5}\n" for k in range(40)
+)).encode()  # fmt: skip
+PLAN = """\
+time: {column: t, unit: ms}
+motion: imposed
+constants: {atmospheric_pressure: {value: 1013, unit: mbar}, kt: 0.3}
+signals:
+  position: {column: x, unit: mm, sign: -1, scale: 1.0e-3, offset: -20}
+  force: {columns: [i, j], gains: [kt, -1.0], times: u, bits: 16, unit: N m}
+  pressure_a: {column: p1, unit: bar, gauge: true}
+others: {oil: {column: p2, unit: psi}}
+"""
+
+
+def _json_table() -> bytes:
+    rows = [{"t": 0.002 * k, "x": k % 7 + 0.1 * k, "F": k % 3 - 1.5, "on": True} for k in range(40)]
+    return json.dumps({"mass": 1.0, "rows": rows}).encode()
+
+
+def _npz_table() -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, t=np.arange(40) * 0.002, x=np.sin(np.arange(40)), F=np.cos(np.arange(40)))
+    return stream.getvalue()
 
 
 def _shipped(name: str) -> bytes:
@@ -186,6 +237,10 @@ PARSERS = (
     Parser("control file", "control.yaml", read_control, *_of_text(_shipped("control/cascade"))),
     Parser("programme", "programme.yaml", read_trials, *_of_text(PROGRAMME.encode())),
     Parser("CSV of voltages", "input.csv", read_voltages, lambda: mutated([CSV]) | texts.CSV_FILES, lambda: CSV),
+    Parser("table as text", "run.csv", read_published, lambda: mutated([TABLE]) | texts.CSV_FILES, lambda: TABLE),
+    Parser("table as JSON", "run.json", read_published, lambda: mutated([_json_table()]), _json_table),
+    Parser("table as NPZ", "run.npz", read_published, lambda: mutated([_npz_table()]), _npz_table),
+    Parser("map of a table", "map.yaml", read_plan, *_of_text(PLAN.encode())),
     Parser("HTTP of the workbench", "request", asking.ask, asking.inputs, lambda: asking.requests()[0]),
     Parser("file of effects", "mine.py", read_effects, lambda: mutated([EFFECT.encode()], 3), lambda: EFFECT.encode()),
 )

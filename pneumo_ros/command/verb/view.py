@@ -29,7 +29,7 @@ SHOWN = {
     "position": ("position", "mm", 1e3), "velocity": ("velocity", "m/s", 1.0),
     "pressure_a": ("pressure a", "bar", 1e-5), "pressure_b": ("pressure b", "bar", 1e-5),
     "supply_pressure": ("supply pressure", "bar", 1e-5), "voltage": ("voltage", "V", 1.0),
-    "effort": ("effort", "N", 1.0),
+    "effort": ("effort", "N", 1.0), "load_cell": ("load cell", "N", 1.0),
 }  # fmt: skip
 
 

@@ -1,0 +1,68 @@
+"""Checks of a mapped table: does it hold what some verb can use, and can its values be what the map says?"""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.records.recording import Array
+from pneumo_ros.tables.map_file import Map
+from pneumo_ros.tables.mapped import Mapped
+from pneumo_ros.tables.signals import SIGNALS
+from pneumo_ros.tables.table import Table
+
+_BEHAVIOUR = ("force", "load_cell", "pressure_a", "pressure_b", "command")  # with position, one of these makes a law
+_SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
+_PRESSURES = ("pressure_a", "pressure_b", "supply_pressure")
+
+
+def check_signals(table: Table, plan: Map, found: Mapped) -> None:
+    """Raises DataError for a table or map that lacks what every verb needs."""
+    if len(table) < 2:
+        raise DataError(f"{table.path} has {len(table)} row; a recording needs at least two")
+    there = f"the map has {', '.join(plan.signals) or 'no signals'}; {table.listed()}"
+    if "position" not in found.signals:
+        raise DataError(
+            f"{table.path}: no column is mapped to position, which every verb needs; type position: {{column: NAME, "
+            "unit: "
+            f"mm}} in the section signals; {there}"
+        )
+    if not any(name in found.signals for name in _BEHAVIOUR):
+        raise DataError(
+            f"{table.path}: there is a position, and nothing that moves it or results from it; map one of "
+            f"{', '.join(_BEHAVIOUR)}; {there}"
+        )
+
+
+def check_values(path: Path, signals: Mapping[str, Array], found: Mapped, warn: Callable[[str], None]) -> None:
+    """Raises DataError for signals (n,) [SI] that cannot be what the map says; `warn` gets a sentence on odd ones."""
+    for name, values in signals.items():
+        finite = values[np.isfinite(values)]
+        if not len(finite):
+            raise DataError(f"{path}: {name} has no finite number where the clock is usable; leave it out of the map")
+        if name in _PRESSURES:
+            _check_pressure(path, name, finite, found, warn)
+        if len(finite) > 1 and finite.min() == finite.max() and name in SIGNALS and name != "command":
+            warn(f"{name} is {finite[0]:.4g} {found.units[name]} throughout: {_constant(name)}.")
+
+
+def _check_pressure(path: Path, name: str, finite: Array, found: Mapped, warn: Callable[[str], None]) -> None:
+    """Absolute pressures are above 0."""
+    low, share = float(finite.min()), float(np.mean(finite <= 0.0))
+    if low > 0.0:
+        return
+    said = (
+        f"{name} (column {found.origins[name]}) falls to {low:.4g} Pa absolute, in {100.0 * share:.2g} % of its samples"
+    )
+    if share > _SEVERAL:
+        raise DataError(
+            f"{path}: {said}; no pressure does. If it is measured against the atmosphere, type gauge: true; else "
+            "check its "
+            "unit, scale and offset in the map"
+        )
+    warn(f"{said}: its sensor drops out.")
+
+
+def _constant(name: str) -> str:
+    return "nothing moves" if name in ("position", "velocity") else "is its sensor connected?"
