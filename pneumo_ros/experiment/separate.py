@@ -15,7 +15,8 @@ from pneumo_ros.plant import Model
 
 CLEAR = 5.0  # noise deviations that distinguish effects for certain; fewer than NOTHING decide nothing
 NOTHING = 2.0
-WHERE = (*FAMILIES, "prior knowledge of the other parameters")
+PRIOR = "prior knowledge of the other parameters"
+WHERE = (*FAMILIES, PRIOR)
 
 Progress = Callable[[float], None]  # called with the share that is done, 0 to 1
 

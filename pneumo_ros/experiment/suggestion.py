@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from pneumo_ros.experiment.separate import CLEAR, NOTHING, Separation
+from pneumo_ros.experiment.separate import CLEAR, NOTHING, PRIOR, Separation
 
 
 def best(ranked: Sequence[Separation], by_hand: bool = True) -> Separation | None:
@@ -24,7 +24,8 @@ def suggestion(ranked: Sequence[Separation], effect_a: str, effect_b: str, model
             f"at most {most:.1f} noise deviations are expected, and fewer than {NOTHING:g} decide nothing."
         )
     first = f"{chosen.offer.prepare}: " if chosen.offer.prepare else ""
-    weak = "" if chosen.separation >= CLEAR else ", which is little: repeat it"
+    more = ", and repeating it adds little" if chosen.where == PRIOR else ": repeat it"
+    weak = "" if chosen.separation >= CLEAR else f", which is little{more}"
     return (
         f"To distinguish {effect_a} from {effect_b}, {first}"
         f"pneumo experiment {chosen.offer.experiment} --model {model} "

@@ -7,7 +7,7 @@ import pytest
 from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment.constant_voltage import constant_voltage
 from pneumo_ros.experiment.offers import Offer, Part, menu
-from pneumo_ros.experiment.separate import CLEAR, NOTHING, Separation, rivals, separate
+from pneumo_ros.experiment.separate import CLEAR, NOTHING, PRIOR, Separation, rivals, separate
 from pneumo_ros.experiment.suggestion import best, suggestion
 from pneumo_ros.experiment.whitened import Noise
 from pneumo_ros.plant import load_model
@@ -34,10 +34,24 @@ def test_sliding_one_way_does_not_separate_a_load_from_asymmetric_friction(direc
     assert found("asymmetric_friction", "constant_load", one_way(direction))["one-way"].separation < 1.5
 
 
-def test_both_directions_and_their_breakaways_do() -> None:
-    one = found("asymmetric_friction", "constant_load", "constant-voltage")["constant-voltage"]
-    assert one.separation > CLEAR
-    assert one.where == "force at breakaway"
+def test_a_load_is_not_friction_with_one_ratio_but_friction_with_a_ratio_for_each_level_is_nearly_a_load() -> None:
+    ranked = separate(AXIS, "asymmetric_friction", "constant_load", offers=[MENU["constant-voltage"]])
+    assert ranked[0].if_a > CLEAR  # 10 % are 3.5 N of load while the piston slides and 5 N where it breaks away
+    assert NOTHING < ranked[0].if_b < CLEAR  # 70 + 10 N one way and 70 - 10 N the other, and so at breakaway
+    assert ranked[0].where == PRIOR
+    sentence = suggestion(ranked, "asymmetric_friction", "constant_load")
+    assert "which is little, and repeating it adds little" in sentence
+
+
+def test_friction_known_before_tells_a_large_load_from_friction_and_hardly_a_small_one() -> None:
+    equal = {"asymmetric_friction.ratio": 0.1, "asymmetric_friction.static_ratio": 107.0 / 110.0 - 1.0}  # 7 N each
+    both = AXIS.with_effects(
+        [*AXIS.effects, "asymmetric_friction", "constant_load"], {**equal, "constant_load.load": 20.0}
+    )
+    told = separate(both, "asymmetric_friction", "constant_load", offers=[MENU["steps"]])[0]
+    assert told.if_a < NOTHING  # a load of -3.5 N, Coulomb and static friction 3.5 N higher: within the 5 % known
+    assert told.where == PRIOR
+    assert told.if_b > CLEAR  # Coulomb friction of 90 N instead of 70 N is beyond what was known
 
 
 def test_a_slow_triangle_shows_the_play_of_a_blocked_pistons_valve_and_jumps_do_not() -> None:
