@@ -129,8 +129,9 @@ def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts:
     columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
     held = _held(run, parts)
     return model.follow_lanes(
-        given, held, rest, parameters, sample_time=run.sample_time, parts=parts, step=step, columns=columns
-    )
+        given, held, rest, parameters, sample_time=run.sample_time, step=step, start=run.begin, parts=parts,
+        columns=columns,
+    )  # fmt: skip
 
 
 def _held(run: Run, parts: int) -> Array:
@@ -141,7 +142,7 @@ def _held(run: Run, parts: int) -> Array:
 def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:
     step = min(1.01 * run.sample_time / QUICK, LONGEST)
     rest = model.state()[given.shape[1] :]
-    return model.follow(given, held, rest, sample_time=run.sample_time, parts=QUICK, step=step)
+    return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=QUICK)
 
 
 def reads_wrong(effect: type[Effect]) -> bool:

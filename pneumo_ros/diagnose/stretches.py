@@ -102,7 +102,10 @@ def _rate(run: Run, signal: Array) -> Array:
 
 
 def stretch(run: Run, begin: float, end: float) -> Run:
-    """The run from `begin` to `end` [s]; its settling time at the start is not judged."""
+    """The run from `begin` to `end` [s]; its settling time at the start is not judged.
+
+    Running time goes on: friction that falls as the machine warms up looks like other effects without it.
+    """
     first, last = round(begin / run.sample_time), min(round(end / run.sample_time), len(run) - 1)
     rows = slice(first, last + 1)
     measured = run.measured[rows].copy()
@@ -115,6 +118,7 @@ def stretch(run: Run, begin: float, end: float) -> Run:
         pressure_b=_part(run.pressure_b, rows),
         input=run.input[first * PARTS : last * PARTS],
         measured=measured,
+        begin=run.begin + first * run.sample_time,
     )
 
 

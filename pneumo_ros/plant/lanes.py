@@ -90,12 +90,13 @@ def fitting(
 
 def follow_lanes(
     kernel: ModuleType, measured: Array, voltage: Array, rest: Array, parameters: Array,
-    kept: NDArray[np.int64], wanted: NDArray[np.int64], h: float, stride: int, parts: int, threads: int,
+    kept: NDArray[np.int64], wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Run `kernel.follow_lanes` over all lanes, on `threads` threads; returns the kept states, wanted derivatives.
 
     measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); kept, wanted: indices
-    of states. Both results are (lanes, samples, indices); row 0 of the derivatives repeats row 1.
+    of states; `start` [s]: time of the first sample. Both results are (lanes, samples, indices); row 0 of the
+    derivatives repeats row 1.
     """
     count, samples, width = len(parameters), measured.shape[1], kernel.LANES
     X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
@@ -104,7 +105,7 @@ def follow_lanes(
         which = slice(blocks.start * width, blocks.stop * width)
         given = measured if len(measured) == 1 else measured[which]
         kernel.follow_lanes(
-            given, parameters[which], rest[which], voltage, 0.0, h, stride, parts, kept, X[which], wanted, out[which]
+            given, parameters[which], rest[which], voltage, start, h, stride, parts, kept, X[which], wanted, out[which]
         )
 
     if count:

@@ -257,14 +257,16 @@ class Model:
         *,
         sample_time: float = 1e-3,
         step: float = STEP,
+        start: float = 0.0,
         parts: int = 1,
     ) -> tuple[Array, Array]:
         """Drive the effects' own states along a measured motion; returns states, derivatives, both (samples, states).
 
         measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven);
         voltage: `parts` of them are held one after another between two samples; rest: values of the other states at
-        sample 0. The derivatives are those of the equations, averaged over the interval that ends at each sample:
-        where they differ from the measurement, the equation fails. Row 0 of the derivatives repeats row 1.
+        sample 0, which is at time `start` [s]. The derivatives are those of the equations, averaged over the interval
+        that ends at each sample: where they differ from the measurement, the equation fails. Row 0 of the derivatives
+        repeats row 1.
         """
         given, tail = np.array(measured, dtype=float, ndmin=2), np.array(rest, dtype=float, ndmin=1)
         X = np.empty((len(given), len(self.states)))
@@ -277,7 +279,7 @@ class Model:
         if _whole(len(held), parts) < len(X) - 1:
             raise UsageError(f"{len(held)} voltages do not cover {len(X)} samples")
         stride, h = substeps(sample_time / parts, step)
-        self.kernel.follow(X, self.values, held, 0.0, h, stride, parts, out)
+        self.kernel.follow(X, self.values, held, start, h, stride, parts, out)
         out[0] = out[1] if len(out) > 1 else 0.0
         return X, out
 
@@ -290,6 +292,7 @@ class Model:
         *,
         sample_time: float = 1e-3,
         step: float = STEP,
+        start: float = 0.0,
         parts: int = 1,
         threads: int = 1,
         states: Iterable[str] | None = None,
@@ -309,7 +312,7 @@ class Model:
             raise UsageError(f"{len(held)} voltages do not cover {given.shape[1]} samples")
         stride, h = substeps(sample_time / parts, step)
         kept, wanted = self._indices(states), self._indices(columns)
-        return follow_lanes(self.kernel, given, held, tail, q, kept, wanted, h, stride, parts, threads)
+        return follow_lanes(self.kernel, given, held, tail, q, kept, wanted, start, h, stride, parts, threads)
 
     def _indices(self, names: Iterable[str] | None) -> NDArray[np.int64]:
         chosen = self.states if names is None else tuple(names)

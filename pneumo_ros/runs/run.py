@@ -33,14 +33,15 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
+    begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
 
     def __len__(self) -> int:
         return len(self.position)
 
     @cached_property
     def time(self) -> Array:
-        """Grid times [s]."""
-        return np.asarray(np.arange(len(self)) * self.sample_time, dtype=np.float64)
+        """Grid times [s]: running time since the recording began."""
+        return np.asarray(self.begin + np.arange(len(self)) * self.sample_time, dtype=np.float64)
 
     @cached_property
     def held(self) -> Array:

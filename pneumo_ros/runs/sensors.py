@@ -33,7 +33,9 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
     rest = model.state()[frame.shape[1] :]
 
     def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
-        states, rates = model.follow(given[0], run.input, rest, sample_time=run.sample_time, parts=PARTS)
+        states, rates = model.follow(
+            given[0], run.input, rest, sample_time=run.sample_time, start=run.begin, parts=PARTS
+        )
         return states[None], rates[None]
 
     if model.composition.true_sensors:
@@ -77,7 +79,7 @@ def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) 
     """
     voltage = np.concatenate([run.input[:PARTS], run.input])  # row k is read under the last voltage before it
     first, dt = np.zeros(len(states), dtype=np.int64), run.sample_time
-    read = sense(model, states, parameters, voltage, first, sample_time=dt, start=-dt, parts=PARTS)
+    read = sense(model, states, parameters, voltage, first, sample_time=dt, start=run.begin - dt, parts=PARTS)
     columns = [model.states.index(name) for name in model.composition.sensed]
     return np.asarray(states[:, :, columns] - read)
 

@@ -28,9 +28,20 @@ def test_both_directions_take_part() -> None:
     runs += [sliding(f"constant_m{k}", -0.1, 20.0) for k in range(3)]
     runs += [sliding("train_slow", 0.1, 60.0, period=10.0)]
     part = stretches(runs, 50.0)
-    assert 50.0 <= sum(run.time[-1] for run in part) <= 54.0
+    assert 50.0 <= sum(run.time[-1] - run.time[0] for run in part) <= 54.0
     extending, retracting = seconds_by_direction(part)
     assert 0.5 < extending / retracting < 2.0
+
+
+def test_running_time_goes_on() -> None:
+    """A machine that warms up is warm in a late stretch."""
+    whole = sliding("long", 0.1, 600.0, period=47.0)
+    part = stretches([whole], 50.0)
+    assert part[-1].time[0] > 100.0
+    for run in part:
+        rows = np.searchsorted(whole.time, run.time - 1e-9)
+        assert np.abs(run.time - whole.time[rows]).max() < 1e-9
+        assert run.position.tobytes() == whole.position[rows].tobytes()
 
 
 def test_one_long_run_is_met_in_both_directions() -> None:

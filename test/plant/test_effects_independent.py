@@ -123,7 +123,7 @@ def test_delayed_positions_are_those_of_then(delay: float) -> None:
     model = ours("position_sensor_delay", {"delay": delay})
     x = run(model, reading[0])
     shown = model.outputs(x, MANOEUVRE[:-1])["y_measured"]
-    apart = np.abs(shown - sensors._delayed(machine, reading)[1:])
+    apart = np.abs(shown - sensors._delayed(machine, reading, 1e-3)[1:])
     assert np.sqrt((apart**2).mean()) < 5e-6  # m, noise of a good sensor
     assert apart.max() < 5e-5
     assert np.abs(x[:, 0] - shown).max() > 4e-4
