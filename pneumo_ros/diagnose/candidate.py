@@ -23,9 +23,11 @@ class Candidate:
     held: Array = field(repr=False)  # residual on held-out runs
     gain: dict[str, float]  # by equation: share of the mean square residual on held-out runs that it removes
     size: float  # in usual sizes
-    share: float  # of the misfit beyond noise that it removes where it acts, in its best equation, on held-out runs
+    share: float  # of the misfit beyond noise that it removes: where it acts, in its best equation, on held-out runs;
+    # or of the improbability of the model's own parameters
     first: bool  # whether nothing was added before
     score: Score  # nats that it gains over the model without it
+    known: float = 0.0  # nats of them by which it agrees better with what was known of the model's parameters
     lag: float = np.inf  # samples, of an effect that delays
     refused: str = ""  # why it may not be added whatever its score
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
@@ -41,7 +43,7 @@ class Candidate:
         found, least = list[str](), SHARE_LEAST[0 if self.first else 1]
         if self.score.nats < MARGIN:
             found.append(f"all recordings together gain {self.score.nats:.0f} nats with it, and {MARGIN:g} are asked")
-        elif self.score.held <= 0.0:
+        elif self.score.held <= (0.0 if self.known < MARGIN else -MARGIN):
             found.append(f"held-out recordings lose {-self.score.held:.1f} nats with it")
         if self.size < MATERIAL:
             found.append(f"its size is only {self.size:.2g} times the usual one")

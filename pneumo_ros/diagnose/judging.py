@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import Candidate
+from pneumo_ros.diagnose.basefit import strain
+from pneumo_ros.diagnose.candidate import MARGIN, Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
@@ -37,14 +38,16 @@ def judged(
         model = base.everything.with_parameters(h.values)
         gained, beside = scoring.best(model, fits, (h.residual, r, h.shift))
         gained = gained - without
-        prior = prior_gain(base, alone[2], beside[2], h)
+        strained, prior = strain(alone[2] + base.offset), prior_gain(base, alone[2], beside[2], h)
+        acts = acting(held.residual, r)
         found.append(
             Candidate(
                 hypothesis=h,
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
                 size=magnitude(h.coordinates, h.u),
-                share=explained(held.evidence, held.residual, r, acting(held.residual, r)),
+                share=max(explained(held.evidence, held.residual, r, acts), prior / max(strained, MARGIN)),
+                known=prior,
                 first=first,
                 score=Score(float(gained[0]) + prior - occam(base, h), float(gained[1])),
                 lag=lag(h, base.evidence.runs[0].sample_time),
@@ -91,6 +94,6 @@ def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
 
 
 def lag(h: Hypothesis, sample_time: float) -> float:
-    """Shortest delay of an effect in samples of `sample_time` [s]; infinite if it has none."""
+    """All delays of an effect together, in samples of `sample_time` [s]; infinite if it has none."""
     delays = [h.values[c.name] for c in h.coordinates if c.role == "delay"]
-    return min(delays) / sample_time if delays else np.inf
+    return sum(delays) / sample_time if delays else np.inf

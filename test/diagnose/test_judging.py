@@ -95,6 +95,8 @@ def test_a_round_whose_effect_vanished_says_so() -> None:
         ({"score": Score(MARGIN - 2.1, 2.0)}, "gain 8 nats with it, and 8 are asked"),
         ({"score": Score(MARGIN - 1.9, 2.0)}, ""),
         ({"score": Score(200.0, -0.2)}, "held-out recordings lose 0.2 nats with it"),
+        ({"score": Score(200.0, -0.2), "known": 1.1 * MARGIN}, ""),
+        ({"score": Score(200.0, -1.1 * MARGIN), "known": 1.1 * MARGIN}, "held-out recordings lose 8.8 nats with it"),
         ({"size": 0.9 * MATERIAL}, "its size is only 0.045 times the usual one"),
         ({"share": 0.3}, ""),
         ({"share": 0.3, "first": False}, "removes only 30 % of the misfit beyond noise"),
