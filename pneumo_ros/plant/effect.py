@@ -43,9 +43,9 @@ ROLES = ("", "delay", "damping")  # of a parameter, where its unit and neutral v
 class Parameter:
     """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values.
 
-    `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for a
-    pure delay, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another role. `optional`:
-    whether a machine file may leave the parameter out, as one may whose default is neutral.
+    `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
+    time by which a signal is late, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
+    role. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral.
     """
 
     default: float

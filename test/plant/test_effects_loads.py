@@ -133,6 +133,18 @@ def test_delayed_position_is_the_position_of_then(delay: float) -> None:
     assert np.abs(shown - then)[200:].max() < max(5e-4, 2e-3 * 1e-3 / delay) * largest + 3e-6
 
 
+@pytest.mark.parametrize("delay", [0.0, 5e-3])
+@pytest.mark.parametrize("low_pass", [1e-3, 2e-3, 1.5e-2])
+def test_a_low_pass_smooths_the_position_of_then(low_pass: float, delay: float) -> None:
+    """As the exact response of a delay and a lag of first order to a sine."""
+    t = 1e-3 * np.arange(3001)
+    wave = 2.0 * np.pi * 1.5
+    y, v = 0.05 * (1.0 - np.cos(wave * t)), 0.05 * wave * np.sin(wave * t)
+    shown = measured("position_sensor_delay", {"delay": delay, "low_pass": low_pass}, y, v, 1e-3)
+    then = 0.05 * (1.0 - (np.exp(1j * wave * (t - delay)) / (1.0 + 1j * wave * low_pass)).real)
+    assert np.abs(shown - then)[300:].max() < 5e-3 * 0.05 * wave * (low_pass + delay) + 3e-6
+
+
 def test_sensors_of_pressure_err_by_offset_and_gain() -> None:
     offset = {"offset_a": 7e3, "offset_b": -4e3}
     assert seen("pressure_sensor_offset", "p_a_measured", offset, p_a=3e5) == pytest.approx(3.07e5, rel=1e-12)
