@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.hypothesis import (
     missing,
     weights,
 )
+from pneumo_ros.diagnose.score import Scoring
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
@@ -94,11 +95,11 @@ class Fitter:
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
             return model
-        best, least = model, self._likelihood(model) - AS_MUCH
+        best, least = model, self._score(model) - AS_MUCH
         for size in (c for c in own if c.is_size):
             if model[size.name] != size.neutral:
                 simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
-                if (found := self._likelihood(simpler)) > least:
+                if (found := self._score(simpler)) > least:
                     best, least = simpler, found
         return best
 
@@ -109,6 +110,12 @@ class Fitter:
         """
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
         return self._at_best(model) - self._likelihood(larger, values)
+
+    def _score(self, model: Model) -> float:
+        """Log evidence of all recordings and of the priors of the parameters."""
+        parts = (self.train, self.held) if self._held_runs else (self.train, self.train)
+        found = Scoring(*parts).evidence(model, *(part.residual(model) for part in parts))
+        return float(found.sum() if self._held_runs else found[0]) - strain(self.known(model).offset(model))
 
     def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
         """Log likelihood of the training evidence and of the priors of the parameters except `fixed`.
