@@ -8,7 +8,7 @@ from numpy import ndarray
 from .machine import TEXTURE_SPACING, TEXTURE_START, Machine
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def between(table: ndarray, at: float) -> float:
     """Linear interpolation of a table at the fractional index `at`, ends held."""
     if at <= 0.0:
@@ -20,7 +20,7 @@ def between(table: ndarray, at: float) -> float:
     return table[i] + (at - i) * (table[i + 1] - table[i])
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def level(
     m: Machine, y: float, v: float, load: float, p_a: float, p_b: float, age: float, warmth: float, t: float
 ) -> float:
@@ -31,7 +31,8 @@ def level(
             static += m.rest_rise * (1.0 - exp(-((age / m.rest_time) ** m.rest_power)))
         else:  # after Dieterich
             static += m.rest_rise * log1p(age / m.rest_time) / log1p(10.0 / m.rest_time)
-    speed = abs(v / m.stribeck) ** m.stribeck_power
+    speed = abs(v / m.stribeck)
+    speed = speed * speed if m.stribeck_power == 2.0 else speed**m.stribeck_power
     rise = exp(-speed)
     if m.stribeck_rational != 0.0:  # after Hess and Soom
         rise += m.stribeck_rational * (1.0 / (1.0 + speed) - rise)
@@ -55,13 +56,13 @@ def level(
     return g
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def texture(table: ndarray, y: float) -> float:
     """Friction texture at position y [N]."""
     return between(table, (y - TEXTURE_START) / TEXTURE_SPACING)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def yielded(m: Machine, v: float, deflection: float, share: float) -> float:
     """alpha: the plastic part of the motion, from the bristle's share of its highest force."""
     share = abs(share)
@@ -73,7 +74,7 @@ def yielded(m: Machine, v: float, deflection: float, share: float) -> float:
     return 0.5 + 0.5 * sin(pi * (share - middle) / width)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def film(m: Machine, v: float) -> float:
     """Drag of the film [N]: the base model's square, and the viscous part, by the direction."""
     viscous = m.viscous_out * max(v, 0.0) + m.viscous_in * min(v, 0.0)

@@ -9,13 +9,13 @@ from .machine import Machine
 _WALL_PRESSURE = 4e5  # where wall_time is meant
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def volumes(m: Machine, y: float):
     """Volumes of the chambers [m3]."""
     return m.volume_a + m.area_a * y, m.volume_b - m.area_b * y
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def through_hose(m: Machine, y: float, p: float, to: float, out: float, end: float, kinked: bool):
     """Share of the flows to and from one chamber after kink, tube loss and cushion; `end` is where it is smallest."""
     if kinked and m.kink < 1.0:
@@ -32,7 +32,7 @@ def through_hose(m: Machine, y: float, p: float, to: float, out: float, end: flo
     return to, out
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def cross_leak(m: Machine, p_a: float, p_b: float) -> float:
     """Leak across the piston, from a to b [kg/s]."""
     difference = p_a - p_b
@@ -44,14 +44,14 @@ def cross_leak(m: Machine, p_a: float, p_b: float) -> float:
     return leak
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def outward_leak(m: Machine, linear: float, gap: float, p: float) -> float:
     """Leak from a chamber at p to atmosphere [kg/s]."""
     gauge = p - m.atmosphere
     return linear * gauge + gap * gauge * (p + m.atmosphere) / (_WALL_PRESSURE + m.atmosphere)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def wall_heat(m: Machine, area: float, volume: float, middle: float, p: float, gas: float) -> float:
     """Heat from the wall into the gas [W]: film coefficient growing with sqrt(p T), over the walls the gas touches."""
     specific = m.gas_constant / (m.adiabatic - 1.0)

@@ -15,7 +15,7 @@ _PLAYS = 5
 drop_stale_kernels()
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _runge_kutta(m: Machine, rough: Roughness, x: ndarray, t: float, h: float, u: float, late: ndarray, k: ndarray):
     rates(m, rough, x, t, u, late, k[0])
     for stage, part in ((1, 0.5), (2, 0.5), (3, 1.0)):
@@ -26,7 +26,7 @@ def _runge_kutta(m: Machine, rough: Roughness, x: ndarray, t: float, h: float, u
         x[i] += h / 6.0 * (k[0, i] + 2.0 * k[1, i] + 2.0 * k[2, i] + k[3, i])
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _remember(m: Machine, x: ndarray, t: float, u: float, past: ndarray, step: int, weight: float) -> None:
     """Add flows and velocity of now, weighted, to the mean over `step` in the ring `past` (3, room)."""
     q_a, q_b, _ = line_flows(m, x, t, u)
@@ -36,7 +36,7 @@ def _remember(m: Machine, x: ndarray, t: float, u: float, past: ndarray, step: i
     past[2, now] += weight * x[1]
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _recall(m: Machine, past: ndarray, step: int, h: float, late: ndarray) -> None:
     """Write the means over `step`, moved back by the delays, into `late`; flows before the first step are zero."""
     room = past.shape[1]
@@ -50,7 +50,7 @@ def _recall(m: Machine, past: ndarray, step: int, h: float, late: ndarray) -> No
     past[:, step % room] = 0.0
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _slipped(plays: ndarray, m: Machine, u: float) -> float:
     """Spool command behind the plays: one of half width m.play, or five from 0 to twice that, in parallel."""
     total = 0.0
@@ -61,7 +61,7 @@ def _slipped(plays: ndarray, m: Machine, u: float) -> float:
     return total / _PLAYS
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _positioner(y: float, wanted: float, memory: ndarray, sample: float) -> float:
     """Voltage of a plain PI position loop with dead zone jump, as rigs have it for creeping [V]."""
     error = wanted - y
@@ -72,7 +72,7 @@ def _positioner(y: float, wanted: float, memory: ndarray, sample: float) -> floa
     return effort + (0.78 if effort > 0.0 else -0.78)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _guarded(u: float, y: float, limit: float, memory: ndarray) -> float:
     """The voltage, turned inwards from beyond `limit` until 0.15 m back."""
     if abs(y) > limit:
@@ -82,7 +82,7 @@ def _guarded(u: float, y: float, limit: float, memory: ndarray) -> float:
     return u if memory[1] == 0.0 else memory[1] * abs(u)
 
 
-@njit(cache=True)  # the called functions are compiled into it; see `cache`
+@njit(cache=True, error_model="numpy")  # the called functions are compiled into it; see `cache`
 def integrate(
     m: Machine,
     rough: Roughness,

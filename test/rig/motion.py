@@ -9,7 +9,7 @@ from .machine import Machine
 _SOFT = 2e-5  # m: the damping of a contact comes with its first 20 um
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def stop(m: Machine, y: float, v: float) -> float:
     """Push of the end stops [N], positive outwards: spring and damper, never pulling."""
     if y > m.half_stroke:
@@ -19,7 +19,7 @@ def stop(m: Machine, y: float, v: float) -> float:
     return 0.0
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def external(m: Machine, y: float) -> float:
     """Loads by position, positive against extension [N]."""
     force = m.load
@@ -31,7 +31,7 @@ def external(m: Machine, y: float) -> float:
     return force
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def coupled(m: Machine, stretch: float, rate: float) -> float:
     """Force by which the coupling pulls the piston along with its load [N]; stretch = load minus piston [m]."""
     if abs(stretch) <= m.coupling_gap:

@@ -33,27 +33,29 @@ STATES = (
 )
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def gas_pressures(m: Machine, x: ndarray):
     """Chamber pressures [Pa] from internal energies."""
     room_a, room_b = volumes(m, x[0])
     return (m.adiabatic - 1.0) * x[3] / room_a, (m.adiabatic - 1.0) * x[4] / room_b
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def spool_position(m: Machine, x: ndarray, command: float) -> float:
     """Position of the spool [V]."""
     return x[7] if m.spool_rate > 0.0 or m.spool_lag > 0.0 else command
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def supply_pressure(m: Machine, x: ndarray, t: float) -> float:
     """Pressure at the valve's inlet [Pa]."""
     at_rest = x[9] if m.feed > 0.0 else m.supply
+    if m.ripple == 0.0:
+        return at_rest
     return at_rest * (1.0 + m.ripple * sin(2.0 * pi * m.ripple_hertz * t))
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def line_flows(m: Machine, x: ndarray, t: float, command: float):
     """Net flows into the hoses of a and b, and the flow from the supply [kg/s]."""
     p_a, p_b = gas_pressures(m, x)
@@ -63,7 +65,7 @@ def line_flows(m: Machine, x: ndarray, t: float, command: float):
     return to_a - from_a, to_b - from_b, to_a + to_b
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def rates(m: Machine, rough: Roughness, x: ndarray, t: float, command: float, late: ndarray, dx: ndarray) -> None:
     """Write the time derivative of x into dx; `late` holds delayed flows a, b and the delayed velocity."""
     y, v = x[0], x[1]
@@ -92,7 +94,7 @@ def rates(m: Machine, rough: Roughness, x: ndarray, t: float, command: float, la
     dx[12] = 1.0 - abs(v) * x[12] / m.rest_slip if m.rest_rise != 0.0 else 0.0
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _chambers(m: Machine, x: ndarray, p_a: float, p_b: float, q_a: float, q_b: float, dx: ndarray) -> None:
     specific = m.gas_constant / (m.adiabatic - 1.0)
     gas_a, gas_b, warm_a, warm_b = m.temperature, m.temperature, 0.0, 0.0
@@ -113,7 +115,7 @@ def _chambers(m: Machine, x: ndarray, p_a: float, p_b: float, q_a: float, q_b: f
     dx[6] = q_b + across - out_b
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _supply(m: Machine, x: ndarray, command: float, drawn: float, dx: ndarray) -> None:
     dx[7] = dx[8] = dx[9] = 0.0
     if m.spool_rate > 0.0:
@@ -126,7 +128,7 @@ def _supply(m: Machine, x: ndarray, command: float, drawn: float, dx: ndarray) -
         dx[9] = m.adiabatic * m.gas_constant * m.temperature / m.tank * (coming - drawn)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _bodies(m: Machine, x: ndarray, force: float, dx: ndarray) -> None:
     mass = m.mass + m.payload
     dx[0] = x[1]

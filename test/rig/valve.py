@@ -10,7 +10,7 @@ REFERENCE_DENSITY = 1.185  # kg/m3, ISO 6358 reference atmosphere ANR
 _LAMINAR = 1e-3  # relative pressure difference below which the ISO flow is linear
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def opening(m: Machine, spool: float) -> float:
     """Signed opening phi of a spool at `spool` volts."""
     if spool > m.dead_right:
@@ -20,7 +20,7 @@ def opening(m: Machine, spool: float) -> float:
     return 0.0
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def iso_6358(m: Machine, conductance: float, upstream: float, downstream: float) -> float:
     """Mass flow of an orifice after ISO 6358 [kg/s], choked below the critical ratio, laminar near equal pressures."""
     if downstream > upstream:
@@ -34,7 +34,7 @@ def iso_6358(m: Machine, conductance: float, upstream: float, downstream: float)
     return conductance * REFERENCE_DENSITY * upstream * share * slope
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def path(m: Machine, phi: float, coefficient: float, upstream: float, downstream: float) -> float:
     """Mass flow through one edge, open by phi >= 0: linear in the pressure difference, or choked, or a mixture."""
     linear = phi * coefficient * (upstream - downstream)
@@ -44,12 +44,12 @@ def path(m: Machine, phi: float, coefficient: float, upstream: float, downstream
     return (1.0 - m.sonic) * linear + m.sonic * iso_6358(m, conductance, upstream, downstream)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def _root(difference: float) -> float:
     return difference / sqrt(abs(difference) + 100.0)
 
 
-@njit
+@njit(error_model="numpy", _nrt=False)
 def flows(m: Machine, spool: float, supply: float, p_a: float, p_b: float):
     """Mass flows supply -> a, a -> atmosphere, supply -> b, b -> atmosphere [kg/s]."""
     phi = opening(m, spool)
