@@ -57,7 +57,8 @@ def run_lanes(x, q, voltage, first, t0, h, stride, parts, out):
                     u[i] = voltage[first[b, i] + k * parts + j]
                 for s in range(stride):
                     step_lanes(x_b, q_b, u, t_b, ((k * parts + j) * stride + s) * h, h)
-            out[b, k, :] = x_b'''
+            for j in range(out.shape[2]):  # to assign a slice would take a second to compile
+                out[b, k, j] = x_b[j]'''
 
 
 def pointwise_text(name: str, function: str, states: list[str], width: int, names: list[str]) -> str:

@@ -117,14 +117,16 @@ def follow_lanes(measured, q, rest, voltage, t0, h, stride, parts, kept, X, want
             for j in range(kept.shape[0]):
                 X[b + i, 0, j] = x[kept[j] * LANES + i]
         for k in range(measured.shape[1] - 1):
-            x[{n * LANES}:] = 0.0
+            for j in range({n * LANES}, {2 * n * LANES}):
+                x[j] = 0.0
             for i in range(LANES):
                 lane = min(b + min(i, filled - 1), measured.shape[0] - 1)
                 for j in range({m}):
                     c[({width} + j) * LANES + i] = measured[lane, k + 1, j]
             for s in range(steps):
                 follow_block(x, c, voltage[k * parts + s // stride], t0 + (k * steps + s) * h, h, s, steps)
-            x[:{m * LANES}] = c[{width * LANES}:]
+            for j in range({m * LANES}):  # to assign a slice would take two seconds to compile
+                x[j] = c[{width * LANES} + j]
             for j in range({n * LANES}, {2 * n * LANES}):
                 x[j] /= steps
             for i in range(filled):
