@@ -24,7 +24,8 @@ def _run(run: "RunComparison") -> dict[str, NDArray[Any]]:
     found: dict[str, NDArray[Any]] = {
         "name": np.array(run.name), "time": grid.time, "velocity": run.motion.velocity, "input": run.motion.input,
     }  # fmt: skip
-    found |= {f"measured/{name}": np.where(grid.measured, s, np.nan) for name, s in grid.signals.items()}
+    every = grid.signals | grid.judged
+    found |= {f"measured/{name}": np.where(grid.measured, s, np.nan) for name, s in every.items()}
     found |= {f"error/{name}": error for name, error in run.predicted.items()}
     found |= {f"free/{name}": error for name, error in run.free_errors.items()}
     found |= {f"regime/{name}": mask for name, mask in run.masks.items()}

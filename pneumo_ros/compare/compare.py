@@ -115,7 +115,7 @@ def compare_run(model: Model, run: Run, horizon: float) -> RunComparison:
         samples=len(run),
         duration=float(run.time[-1]),
         windows=len(windows.start),
-        error={name: judge_signal(e, run.signals[name][rows], noise[name]) for name, e in windows.errors.items()},
+        error={name: judge_signal(e, run.judged[name][rows], noise[name]) for name, e in windows.errors.items()},
         free={name: root_mean_square(error) for name, error in free.errors.items()},
         residuals=residuals,
         motion=motion,

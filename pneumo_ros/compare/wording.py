@@ -7,6 +7,7 @@ SIGNALS = {
     "position_m": ("position", "mm", 1e3),
     "pressure_a_pa": ("pressure a", "kPa", 1e-3),
     "pressure_b_pa": ("pressure b", "kPa", 1e-3),
+    "force_n": ("force", "N", 1.0),
 }
 EQUATIONS = {
     "momentum": ("momentum", "N", 1.0),

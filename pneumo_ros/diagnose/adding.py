@@ -116,7 +116,7 @@ def _with(fitter: Fitter, model: Model, name: str) -> Model:
     own = coordinates(model.library.find(name))
     begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
-    return fitter.refit(fitter.extended(model, best))
+    return fitter.simplest(fitter.refit(fitter.extended(model, best)), name)
 
 
 def _part(tell: Progress, first: float, last: float, what: str) -> Progress:

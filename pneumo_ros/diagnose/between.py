@@ -49,7 +49,7 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
 def _own(fitter: Fitter, model: Model) -> Known:
     """The parameters of the start model, with priors centred at their present values."""
     known = fitter.known(model)
-    own = np.array([name.partition(".")[0] in fitter.start.effects for name in known.names])
+    own = np.array([name.partition(".")[0] in fitter.start.effects for name in known.names], dtype=bool)
     names = tuple(name for name, mine in zip(known.names, own, strict=True) if mine)
     return Known(names, np.array([model[n] for n in names]), known.prior[own], known.step[own])
 

@@ -7,6 +7,7 @@ The equations are those of `equations.equations`; each residual has its noise fr
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -156,7 +157,10 @@ class RunEvidence:
         for variant in follow_each(model, frame, parameters, ranking):
             own = measured
             if not variant.as_measured:
-                own = [self._measured(model, f, variant.states) for f in self.families]
+                own = [
+                    _weighed(self._measured(model, f, variant.states), m)
+                    for f, m in zip(self.families, measured, strict=True)
+                ]
             q = parameters[variant.index]
             parts = [self._value(model, q, variant, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
             result[variant.index] = np.concatenate(parts)
@@ -199,3 +203,13 @@ class RunEvidence:
         there = states[self.rested].copy()
         there[:, 1] = self.direction * _CREEP
         return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])
+
+
+def _weighed(corrected: Measured, measured: Measured) -> Measured:
+    """The corrected states of a chamber with the gas content as measured.
+
+    Else a sensor that is said to read twice the pressure would halve every residual, and explain what it only scales.
+    """
+    if isinstance(corrected, MeasuredChamber) and isinstance(measured, MeasuredChamber):
+        return replace(corrected, content=measured.content)
+    return corrected

@@ -49,7 +49,7 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
     """All families of one run, with noise by the claims of `model`; `index` is the run's."""
     run, (states, claimed) = frame.run, follow(model, frame)
     found, momentum = [], Momentum(model, run, states)
-    for width in WINDOWS["momentum"]:
+    for width in () if model.imposed else WINDOWS["momentum"]:
         bump = Bump.of(width, run.sample_time)
         family = _family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump))
         found.append(replace(family, by_mass=momentum.noise_by_position(bump)))
@@ -60,7 +60,8 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
             bump = Bump.of(width, run.sample_time)
             noise = equation.noise(bump, run, states, rate, steep)
             found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
-    breakaways = tuple(find_breakaways(model, run)) if "z" in model.states else ()
+    slides = "z" in model.states and not model.imposed
+    breakaways = tuple(find_breakaways(model, run)) if slides else ()
     late = slip_times(model, breakaways)
     spread = np.array([force_spread(b.ramp, UNSURE * seconds) for b, seconds in zip(breakaways, late, strict=True)])
     time = np.array([b.time for b in breakaways])

@@ -90,18 +90,18 @@ class Fitter:
         """The model, or the model refitted with one size of its effect `name` neutral, if that explains as much.
 
         Only for sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other
-        over wide ranges, and a fit of both may end in a valley far from the true values.
+        over wide ranges, and a fit of both may end in a valley far from the true values. Sizes that add nothing by
+        default are tried first: the usual shape is taken wherever it explains as much.
         """
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
             return model
-        best, least = model, self._score(model) - AS_MUCH
-        for size in (c for c in own if c.is_size):
-            if model[size.name] != size.neutral:
-                simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
-                if (found := self._score(simpler)) > least:
-                    best, least = simpler, found
-        return best
+        least, sizes = self._score(model) - AS_MUCH, [c for c in own if c.is_size and model[c.name] != c.neutral]
+        for size in sorted(sizes, key=lambda c: model.specification(c.name).default != c.neutral):
+            simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
+            if self._score(simpler) > least:
+                return simpler
+        return model
 
     def against(self, model: Model, name: str, values: Mapping[str, float]) -> float:
         """Log likelihood that the training evidence loses when an effect of these `values` is added to `model`.
@@ -166,7 +166,8 @@ class Fitter:
         base = self.fit(model)
         w = weights(self.train, base.residual, family_scales(self.train, base.residual))
         A, e = base.slopes * w[:, None], w * base.residual
-        held = np.array([model[n] in (model.specification(n).low, model.specification(n).high) for n in base.names])
+        ends = [model[n] in (model.specification(n).low, model.specification(n).high) for n in base.names]
+        held = np.array(ends, dtype=bool)
         std = _spread(A, e, self.train)
         std[~held] = _spread(A[:, ~held], e, self.train)
         named = zip(base.names, std * base.prior, base.prior, strict=True)

@@ -5,12 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.basefit import strain
 from pneumo_ros.diagnose.candidate import MARGIN, Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
-from pneumo_ros.diagnose.score import Score, Scoring, occam, prior_gain
+from pneumo_ros.diagnose.score import Score, Scoring, occam, prior_gain, surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -38,7 +37,7 @@ def judged(
         model = base.everything.with_parameters(h.values)
         gained, beside = scoring.best(model, fits, (h.residual, r, h.shift))
         gained = gained - without
-        strained, prior = strain(alone[2] + base.offset), prior_gain(base, alone[2], beside[2], h)
+        strained, prior = surprise(alone[2] + base.offset), prior_gain(base, alone[2], beside[2], h)
         acts = acting(held.residual, r)
         found.append(
             Candidate(

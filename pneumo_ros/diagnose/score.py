@@ -243,4 +243,13 @@ def prior_gain(base: BaseFit, alone: Array, beside: Array, h: Hypothesis) -> flo
 
     alone, beside: shifts (free,) of the base parameters.
     """
-    return strain(alone + base.offset) - strain(beside + base.offset) - 0.5 * float(h.u @ h.u)
+    return surprise(alone + base.offset) - surprise(beside + base.offset) - 0.5 * float(h.u @ h.u)
+
+
+def surprise(offset: Array) -> float:
+    """Nats by which base parameters (free,) are less probable than at the centres of their priors, in deviations.
+
+    By Student's density of three degrees of freedom: a machine file may be wrong in one parameter, which is no effect;
+    several that moved together are less probable than the effect that explains them.
+    """
+    return 2.0 * float(np.sum(np.log1p(offset**2 / 3.0)))

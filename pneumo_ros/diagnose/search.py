@@ -67,7 +67,8 @@ class Search:
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         # results are kept, as they are needed again
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs))
-        self.slips = lru_cache(2)(lambda model: slips(model, self.train.runs, self.held.runs))
+        self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
+        self.slips = lru_cache(2)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
         self.ranking = lru_cache(1)(self._rank)
 
     def predicted(self, model: Model) -> dict[str, float]:
@@ -166,7 +167,7 @@ class Search:
         only where predictions of training and held-out runs get no worse. The refit starts at the values of a `smaller`
         model that was settled: from elsewhere it may end in a valley, and the larger model would seem to predict worse.
         """
-        if not model.force_driven and self.slips(model) is not None:
+        if self.imposed or (not model.force_driven and self.slips(model) is not None):
             return model
         self.progress(0.9, "refitting by prediction")
         sure = self.fitter.deviations(model)  # by the equations along the motion: segments alone bias the parameters

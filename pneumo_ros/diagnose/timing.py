@@ -27,7 +27,7 @@ def lateness(model: Model, train: Sequence[Run]) -> float:
         return 0.0
     fitter = Fitter(model, train, candidates=[EFFECT])
     begin = model.with_effects([*model.effects, EFFECT], {f"{EFFECT}.delay": 0.5 * train[0].sample_time})
-    found = fit_base(fitter.train, begin, fitter.known(begin)).model
+    found = fit_base(fitter.train, begin, fitter.known(begin, fixed=(f"{EFFECT}.low_pass",))).model
     late, std = found[f"{EFFECT}.delay"], fitter.deviations(found)[f"{EFFECT}.delay"]
     return late if SEEN * std < late < train[0].sample_time else 0.0
 

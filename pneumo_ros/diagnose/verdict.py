@@ -134,6 +134,6 @@ def _change(comparison: Comparison, name: str) -> float:
     """Root mean square over all runs of the change of a measured signal within the horizon, in its unit."""
     changes = []
     for run in (one.motion.run for one in comparison.runs):
-        signal, step = run.signals[name], round(comparison.horizon / run.sample_time)
+        signal, step = run.judged[name], round(comparison.horizon / run.sample_time)
         changes.append(signal[step:] - signal[:-step] if 0 < step < len(signal) else signal[-1:] - signal[0])
     return float(np.sqrt(np.mean(np.concatenate(changes) ** 2)))

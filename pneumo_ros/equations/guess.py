@@ -53,7 +53,7 @@ def guess_states(model: Model, run: Run, at: Index) -> Guess:
     frame = guess.frame[:, : 2 if model.force_driven else 4]
     states, _ = driven(model, frame, run)
     chosen: Array = states[at]
-    if "z" in model.states:
+    if "z" in model.states and not model.imposed:
         acceleration: Array = guess.acceleration[at]
         if not model.composition.true_sensors:
             acceleration += smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)[at]

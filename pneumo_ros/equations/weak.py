@@ -43,14 +43,14 @@ class Residual:
 
 
 def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
-    """Residuals of momentum and, with chambers, of both chambers along a run, by equation name.
+    """Residuals of momentum, unless motion is imposed, and, with chambers, of both chambers, by equation name.
 
     There are no windows without data to judge: no sliding for the momentum, a run shorter than a window. Raises
     DataError when the run leaves the stroke of the model.
     """
     check_position(model, run)
     states, claimed = _along(model, run)
-    result = {"momentum": _momentum(model, run, states, claimed)}
+    result = {} if model.imposed else {"momentum": _momentum(model, run, states, claimed)}
     if not model.force_driven:
         for chamber in ("a", "b"):
             result[f"chamber_{chamber}"] = _chamber(model, run, states, claimed, chamber)

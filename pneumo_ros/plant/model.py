@@ -77,6 +77,11 @@ class Model:
         return self.composition.states
 
     @property
+    def imposed(self) -> bool:
+        """Whether a test machine imposes the motion: the momentum equation is not judged."""
+        return "imposed_motion" in self.effects
+
+    @property
     def force_driven(self) -> bool:
         """Whether the input is a measured force [N] instead of a valve voltage: a machine file without chambers."""
         return "p_a" not in self.states

@@ -41,6 +41,8 @@ def idle_notes(model: Model, run: Run) -> list[str]:
         f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
         for name, (start, stop) in hung.items()
     ]
+    if model.imposed:
+        return notes
     return [*notes, *_rests(model, run, *hung.get("position_m", (0, 0))), *_commands(run)]
 
 

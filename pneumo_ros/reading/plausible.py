@@ -74,10 +74,16 @@ def _mistake(model: Model, run: Run) -> str | None:
 def _mistakes(model: Model) -> list[_Mistake]:
     """Possible mistakes in a recording of this kind of axis."""
     reversed_position = _Mistake(
-        lambda run: replace(run, position=-run.position),
+        lambda run: replace(run, position=-run.position, input=-run.input if run.imposed else run.input),
         "the position seems to count the wrong way; it grows when the rod extends",
         "reversed-position",
         "change the sign where the position is published",
+    )
+    reversed_voltage = _Mistake(
+        lambda run: replace(run, input=-run.input),
+        "valve/command seems to have the wrong sign; a positive voltage fills chamber a",
+        "reversed-voltage",
+        "change the sign where the command is recorded",
     )
     if model.force_driven:
         return [reversed_position]
@@ -96,12 +102,7 @@ def _mistakes(model: Model) -> list[_Mistake]:
             f"add the atmosphere's {rise:.6g} Pa where they are published",
         ),
         reversed_position,
-        _Mistake(
-            lambda run: replace(run, input=-run.input),
-            "valve/command seems to have the wrong sign; a positive voltage fills chamber a",
-            "reversed-voltage",
-            "change the sign where the command is recorded",
-        ),
+        *([] if model.imposed else [reversed_voltage]),
     ]
 
 

@@ -59,7 +59,7 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 
     Raises DataError when it lacks a signal that `model` needs, or is not plausible (see `check_run`).
     """
-    run = without(make_run(recording, model.force_driven), cuts)
+    run = without(make_run(recording, model.force_driven, model.imposed), cuts)
     return run, [f"{note}." for note in check_run(model, run)]
 
 

@@ -14,20 +14,30 @@ _SEVERAL = 1e-3  # share of the samples below which impossible values are dropou
 _HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 145.0), ("kPa", 1300.0), ("hPa", _VACUUM))
 
 
-def check_use(recording: Recording, force_driven: bool) -> None:
+def check_use(recording: Recording, force_driven: bool, imposed: bool = False) -> None:
     """Raises DataError for a recording that is too short, sampled too slowly, or lacks the input of the axis.
 
-    A valve-driven axis needs two chamber pressures, in the range of absolute pressures in Pa.
+    A valve-driven axis, and chambers whose motion is `imposed`, need two chamber pressures, in the range of absolute
+    pressures in Pa.
     """
     _check_time(recording)
-    if recording.imposed and recording.effort is None and recording.voltage is None:
+    by_force = force_driven and recording.load_cell is not None
+    if recording.imposed and not (imposed or by_force) and recording.effort is None and recording.voltage is None:
         raise DataError(
-            f"{recording.name}: its motion is imposed, and it has neither a driving force nor a valve command, which "
-            "every model needs; if the force of a load cell drives it, map that to the signal force and import again"
+            f"{recording.name}: its motion is imposed, and it has neither a driving force nor a valve command. If its "
+            "chambers are sealed, name imposed_motion among the effects of the machine file, and no valve; to judge "
+            "its friction by a load cell, give --model a machine file without the section 'chambers'"
         )
-    if force_driven and recording.effort is None:
+    if imposed and (force_driven or recording.pressure_a is None or recording.pressure_b is None):
+        raise DataError(
+            f"{recording.name}: with imposed_motion, the pressures of both chambers are judged; the machine file needs "
+            "the section 'chambers', and the recording chamber_a/pressure and chamber_b/pressure"
+        )
+    if force_driven and recording.effort is None and not (recording.imposed and recording.load_cell is not None):
         raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
-    if not force_driven and (recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None):
+    if not (force_driven or imposed) and (
+        recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None
+    ):
         raise DataError(
             f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
             "For an axis driven by a measured force give --model a machine file without the section 'chambers'."

@@ -32,7 +32,7 @@ def _signal_chart(run: "RunComparison", name: str, link: str, bucket: int) -> Ch
     words, unit, factor = SIGNALS[name]
     grid, found = run.motion.run, run.error[name]
     kept = extremes(run.predicted[name].astype(float), bucket)
-    time, measured = grid.time[kept], factor * np.where(grid.measured, grid.signals[name], np.nan)[kept]
+    time, measured = grid.time[kept], factor * np.where(grid.measured, (grid.signals | grid.judged)[name], np.nan)[kept]
     error, free = (factor * series[name][kept].astype(float) for series in (run.predicted, run.free_errors))
     fine, level = factor * found.noise / _FINER, factor * found.noise
     ends = time[[0, -1]]

@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts at its time
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
-_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # the best sensors of such machines
+# the best sensors of such machines
+_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3}
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
 
@@ -33,6 +34,8 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
+    imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the input is the
+    # velocity [m/s] and pressures are predicted
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
 
     def __len__(self) -> int:
@@ -60,10 +63,20 @@ class Run:
         every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
         return {name: signal for name, signal in every.items() if signal is not None}
 
+    @property
+    def judged(self) -> dict[str, Array]:
+        """The signals (n,) that a model predicts: `signals`, or force_n and no position where motion was imposed."""
+        if not self.imposed:
+            return self.signals
+        if self.force_driven:
+            return {"force_n": np.append(self.force, self.force[-1])}
+        return {name: signal for name, signal in self.signals.items() if name != "position_m"}
+
     @cached_property
     def noise(self) -> dict[str, float]:
-        """Noise level of every measured signal, by its report name; at least 10 nm and 1 Pa, for simulations."""
-        return {name: max(noise_level(signal), _FINEST[name]) for name, signal in self.signals.items()}
+        """Noise level of every measured signal, by its report name; at least 10 nm, 1 Pa and 1 mN, for simulations."""
+        every = self.signals | self.judged
+        return {name: max(noise_level(signal), _FINEST[name]) for name, signal in every.items()}
 
     @cached_property
     def smoothed(self) -> Smoothed:
@@ -71,15 +84,17 @@ class Run:
         return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
 
 
-def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
+def make_run(recording: Recording, force_driven: bool | None = None, imposed: bool = False) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
-    `force_driven` None takes the recording's own kind. Raises DataError when the recording is too short, sampled too
-    slowly, or lacks the input or the absolute pressures of this kind.
+    `force_driven` None takes the recording's own kind; `imposed`: the velocity is the input, as for a model whose
+    motion a test machine imposes. Where the recording says that its motion is imposed, a force-driven run predicts its
+    force, that of the load cell if there is one. Raises DataError when the recording is too short, sampled too slowly,
+    or lacks the input or the absolute pressures of this kind.
     """
     time = recording.time
     driven = recording.force_driven if force_driven is None else force_driven
-    check_use(recording, driven)
+    check_use(recording, driven, imposed)
     counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
     intervals = int(counts.sum())
     step = float((time[-1] - time[0]) / intervals)
@@ -93,11 +108,20 @@ def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
     position = lay(recording.position)
     assert position is not None
     cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
-    held = np.interp(cells, time, _array(recording.effort)) if driven else _commands_at(recording, cells)
+    if imposed:
+        held = np.repeat(np.diff(position) / step, PARTS)
+    else:
+        held = np.interp(cells, time, _force(recording)) if driven else _commands_at(recording, cells)
     return Run(
         recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
-        distance < _GAP * step, driven,
+        distance < _GAP * step, driven, imposed or (driven and recording.imposed),
     )  # fmt: skip
+
+
+def _force(recording: Recording) -> Array:
+    """The driving force [N]: where the motion is imposed, that of the load cell."""
+    cell = recording.load_cell if recording.imposed else None
+    return _array(recording.effort if cell is None else cell)
 
 
 def _array(signal: Array | None) -> Array:

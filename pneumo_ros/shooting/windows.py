@@ -5,11 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.equations.guess import measured_columns
+from pneumo_ros.equations.equations import centred
+from pneumo_ros.equations.guess import measured_columns, measured_frame
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.runs.sensors import driven
 from pneumo_ros.shooting.segments import side_by_side
 from pneumo_ros.shooting.start import start_states
 
@@ -20,8 +22,9 @@ Array = NDArray[np.float64]
 class Prediction:
     """Simulated against measured over windows: grid index of each window's start, and errors by signal name.
 
-    errors[name] has shape (windows, samples), the model's sensor reading minus the measurement in the signal's unit,
-    NaN where nothing was measured; row i covers the grid points start[i] + 1 ... start[i] + samples.
+    errors[name] has shape (windows, samples), the model's sensor reading minus the measurement in the signal's unit;
+    where the motion is imposed, the force that it takes by the model minus the measured one; NaN where nothing was
+    measured. Row i covers the grid points start[i] + 1 ... start[i] + samples.
     """
 
     start: NDArray[np.int64]
@@ -56,6 +59,8 @@ def free_run(model: Model, run: Run) -> Prediction:
 
 
 def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
+    if run.imposed and model.force_driven:
+        return _force_along(model, run, starts, samples)
     states = model.simulate_lanes(
         run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
         sample_time=run.sample_time, parts=PARTS,
@@ -66,6 +71,16 @@ def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: in
     errors = {
         name: read[:, :, i] - run.signals[name][rows] + hidden
         for i, name in enumerate(measured_columns(model))
-        if name in run.signals
+        if name in run.judged
     }
     return Prediction(starts, run.sample_time, errors, states)
+
+
+def _force_along(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
+    """The force that the imposed motion takes by the model: F + M (a - a_model), with the measured F and a."""
+    states, mean = driven(model, measured_frame(run, force_driven=True), run)
+    mass = model["piston.mass"] + model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"]
+    error = mass * (run.smoothed.acceleration - centred(mean)[:, 1])
+    rows = starts[:, None] + np.arange(1, samples + 1)
+    hidden = np.where(run.measured[rows], 0.0, np.nan)
+    return Prediction(starts, run.sample_time, {"force_n": error[rows] + hidden}, states[rows])

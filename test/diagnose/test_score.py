@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
-from pneumo_ros.diagnose.score import Scoring, moved, occam, prior_gain
+from pneumo_ros.diagnose.score import Scoring, moved, occam, prior_gain, surprise
 from pneumo_ros.plant import Model, load_model
 
 Array = NDArray[np.float64]
@@ -148,12 +148,18 @@ def test_free_coordinates_cost_by_their_number_and_by_how_well_they_are_known() 
     assert occam(*fitted(1, 0.0)[::2]) == pytest.approx(0.0)
 
 
+def test_one_wrong_parameter_is_more_probable_than_two_that_moved_together() -> None:
+    one, two = surprise(np.array([10.0, 0.0])), surprise(np.array([7.0, -7.0]))
+    assert one < 8.0 < two
+    assert surprise(np.array([0.1])) == pytest.approx(2.0 / 3.0 * 0.1**2, rel=0.01)
+
+
 def test_base_parameters_that_return_to_what_is_known_of_them_are_evidence() -> None:
     base, nothing, h = fitted(1, 1.0, shift=3.0)
     back = np.array([-3.0])
-    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(4.5)
+    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(2.0 * np.log(4.0))
     h.u = np.array([2.0])
-    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(4.5 - 2.0)
+    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(2.0 * np.log(4.0) - 2.0)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -112,7 +112,7 @@ def test_the_true_sensors_predict_the_independent_rig(effect: str) -> None:
 def found_on_rig(effect: str) -> tuple[Model, Refit]:
     """True model, and the refit of the sensor effect from zero."""
     base, true, run = on_rig(effect)
-    free = [name for name in true.parameters if name.startswith(effect)]
+    free = [f"{effect}.{key}" for key in SIZES[effect]]
     start = with_effect(base, effect, **dict.fromkeys(SIZES[effect], 0.0))
     priors = {OFFSET: 2e4, GAIN: 0.03, DELAY: 0.02, "backlash": 1e-3}
     return true, refit(start, [run], free=free, priors=dict.fromkeys(free, priors[effect]))

@@ -2,7 +2,8 @@
 
 from pneumo_ros.plant.effect import Effect, Parameter, State
 
-RESOLVED = 2e-3  # s: shorter lags use a share of this one, which is nearly equal without shorter steps
+RESOLVED = 2e-3  # s: shorter delays use a share of this one, which is nearly equal without shorter steps
+SHORTEST = 1e-5  # s, of a low-pass: its lag is of first order, which needs no shorter steps
 
 
 class PositionSensorDelay(Effect):
@@ -23,11 +24,10 @@ class PositionSensorDelay(Effect):
     signature = "position lags the pressures; the residual follows jerk"
 
     def equations(v, y_measured, behind, v_behind, smoothed, delay, low_pass):
-        tau, slow = max(delay, RESOLVED), max(low_pass, RESOLVED)
-        share = min(delay / RESOLVED, 1.0)
-        rate_v_behind, rate_smoothed = 6.0 / tau, 1.0 / slow
+        tau, share = max(delay, RESOLVED), min(delay / RESOLVED, 1.0)
+        rate_v_behind, rate_smoothed = 6.0 / tau, 1.0 / max(low_pass, SHORTEST)
         der_behind = v_behind
         der_v_behind = 12.0 * (v - behind / tau) / tau - rate_v_behind * v_behind
         der_smoothed = v - share * v_behind - rate_smoothed * smoothed
-        y_measured = y_measured - share * behind - min(low_pass / RESOLVED, 1.0) * smoothed
+        y_measured = y_measured - share * behind - min(low_pass / SHORTEST, 1.0) * smoothed
         return y_measured, der_behind, der_v_behind, der_smoothed, rate_v_behind, rate_smoothed

@@ -1,0 +1,21 @@
+"""A test machine that moves the piston."""
+
+from pneumo_ros.plant.effect import Effect
+
+
+class ImposedMotion(Effect):
+    """A test machine imposes the motion: the input is the velocity [m/s] of the piston, whatever forces act on it.
+
+    For gas springs and sealed chambers on a test machine, whose pressures the motion determines. There is no valve.
+    """
+
+    source = "kinematics: y' = v with v given"
+    signature = "the motion does not depend on any force"
+
+    def equations(mass):
+        added_mass = 1e9 * mass  # no force of a cylinder changes the motion of so many kg within a step
+        return added_mass
+
+    def advance(v, U):
+        v = U
+        return v
