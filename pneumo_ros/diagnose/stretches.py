@@ -115,6 +115,7 @@ def stretch(run: Run, begin: float, end: float) -> Run:
         pressure_b=_part(run.pressure_b, rows),
         input=run.input[first * PARTS : last * PARTS],
         measured=measured,
+        further={name: held[first * PARTS : last * PARTS] for name, held in run.further.items()},
     )
 
 

@@ -56,11 +56,12 @@ def free_run(model: Model, run: Run) -> Prediction:
 
 
 def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
+    held = run.inputs(model.inputs)
     states = model.simulate_lanes(
-        run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
+        held, start_states(model, run, starts), samples=samples, first=starts * PARTS,
         sample_time=run.sample_time, parts=PARTS,
     )  # fmt: skip
-    read = sense(model, states, None, run.input, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
+    read = sense(model, states, None, held, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
     rows = starts[:, None] + np.arange(1, samples + 1)
     hidden = np.where(run.measured[rows], 0.0, np.nan)
     errors = {
