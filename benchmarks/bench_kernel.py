@@ -85,7 +85,7 @@ def alternate(ours: Callable[[], object], theirs: Callable[[], object], repetiti
 def our_loop(model: Model, voltage: np.ndarray) -> Callable[[], None]:
     """Our kernel over these voltages, from the start, as a function without arguments."""
     kernel, x, q, out = model.kernel.run, start_of(model), model.values, np.empty((len(voltage), len(model.states)))
-    return lambda: kernel(x.copy(), q, voltage, 0.0, STEP, STRIDE, 1, out)
+    return lambda: kernel(x.copy(), q, voltage.reshape(-1, 1), 0.0, STEP, STRIDE, 1, out)
 
 
 def single(model: Model, loop: Callable[..., np.ndarray], repetitions: int) -> None:

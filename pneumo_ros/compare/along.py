@@ -32,13 +32,12 @@ def along(model: Model, run: Run) -> Along:
     """Drive the model's own states (bristles, spool) along the measured ones and compute its outputs."""
     frame = run.smoothed.frame[:, : 2 if model.force_driven else 4]
     states, _ = driven(model, frame, run)
-    held = np.append(run.held, run.held[-1])
     spread = run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
     return Along(
         run=run,
         velocity=states[:, 1],
         rest_below=max(_SLOWEST, _DEVIATIONS * spread),
-        input=held,
-        seen=model.outputs(states, held, sample_time=run.sample_time),
+        input=np.append(run.held, run.held[-1]),
+        seen=model.outputs(states, run.sampled(model.inputs), sample_time=run.sample_time),
         reach=0.5 * model["piston.stroke"],
     )

@@ -19,6 +19,7 @@ from pneumo_ros.diagnose.refining import refine
 from pneumo_ros.diagnose.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.inputs import check_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import Estimate, default_free
 
@@ -59,11 +60,15 @@ def add(
     """Add `effects` to `model`, refit all free parameters to `train`, and predict `held`, or `train` if it is empty.
 
     Raises UsageError for no run, no effect, an unknown effect, an effect that the model has, and an effect that
-    conflicts with its others; DataError when a run does not fit the model.
+    conflicts with its others; DataError when a run does not fit the model, or lacks a signal that an
+    effect reads.
     """
     check_addable(model, effects)
     if not train:
         raise UsageError("effects are fitted to recordings; give at least one")
+    larger = model.with_effects([*model.effects, *effects])
+    for run in (*train, *held):
+        check_inputs(larger, run)
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting the model as given")
     late = lateness(model, train) if EFFECT not in effects else 0.0

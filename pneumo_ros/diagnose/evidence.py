@@ -186,7 +186,8 @@ class RunEvidence:
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
         """Outputs of the model with parameters `q` at the given states (rows, states) of these samples."""
         out = np.empty((len(rows), len(model.composition.observed)))
-        model.kernel.observe(np.ascontiguousarray(states), q, self.held[rows], self.run.time[rows], out)
+        held = self.run.sampled(model.inputs)[rows]
+        model.kernel.observe(np.ascontiguousarray(states), q, held, self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:

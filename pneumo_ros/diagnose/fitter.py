@@ -23,6 +23,7 @@ from pneumo_ros.diagnose.hypothesis import (
 from pneumo_ros.diagnose.score import Scoring
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import default_free
 
@@ -43,7 +44,9 @@ class Fitter:
     ) -> None:
         """`candidates`: names of the effects that may be added; by default all that the model lacks."""
         self.start, self._held_runs = start, held
-        found = missing(start) if candidates is None else _coordinates(start, candidates)
+        found = (
+            missing(start, measured_inputs([*train, *held])) if candidates is None else _coordinates(start, candidates)
+        )
         self.whole = everything(start, found)  # one kernel for all that may be added
         self.train = Evidence(start, train)
         self.limits: list[str] = []  # a sentence for every loop that ended at its bound

@@ -71,7 +71,7 @@ def resting(run: Run) -> NDArray[np.bool_]:
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
     """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
-    states, mean = _drive(model, frame.run, frame.states, _held(frame.run, QUICK))
+    states, mean = _drive(model, frame.run, frame.states, _held(model, frame.run, QUICK))
     return states, centred(mean)
 
 
@@ -127,16 +127,17 @@ def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts:
     step = min(1.01 * run.sample_time / parts, LONGEST)
     rest = model.state()[given.shape[-1] :]
     columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
-    held = _held(run, parts)
+    held = _held(model, run, parts)
     return model.follow_lanes(
         given, held, rest, parameters, sample_time=run.sample_time, step=step, start=run.begin, parts=parts,
         columns=columns,
     )  # fmt: skip
 
 
-def _held(run: Run, parts: int) -> Array:
-    """The input over parts of a sample."""
-    return np.asarray(run.input.reshape(-1, parts, PARTS // parts).mean(axis=2).ravel())
+def _held(model: Model, run: Run, parts: int) -> Array:
+    """The model's inputs over parts of a sample."""
+    held, width = run.inputs(model.inputs), len(model.inputs)
+    return np.asarray(held.reshape(-1, PARTS // parts, width).mean(axis=1))
 
 
 def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:

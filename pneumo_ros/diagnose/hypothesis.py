@@ -4,7 +4,7 @@ All hypotheses share one model that holds every candidate at its neutral setting
 one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -122,23 +122,26 @@ class BaseFit:
         return slice(0, len(self.names) - self.bends)
 
 
-def missing(model: Model) -> dict[str, tuple[Coordinate, ...]]:
-    """Coordinates of every library effect that the model lacks, that can fade in, and that fits its other effects."""
+def missing(model: Model, measured: Collection[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """Coordinates of every library effect that the model lacks, that can fade in, and that fits its other effects.
+
+    `measured`: the inputs that recordings hold; an effect that reads another one is left out.
+    """
     found = {}
     for name in model.library.names():
         if name not in FRAME and name not in BASE and name not in model.effects:
             effect = coordinates(model.library.find(name))
-            if effect and _fits(model, name):
+            if effect and _fits(model, name, measured):
                 found[name] = effect
     return found
 
 
-def _fits(model: Model, name: str) -> bool:
+def _fits(model: Model, name: str, measured: Collection[str]) -> bool:
     try:
-        model.with_effects([*model.effects, name])
+        larger = model.with_effects([*model.effects, name])
     except PneumoError:
         return False
-    return True
+    return set(larger.inputs) <= set(measured)
 
 
 def everything(model: Model, found: dict[str, tuple[Coordinate, ...]]) -> Model:

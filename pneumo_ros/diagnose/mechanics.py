@@ -26,7 +26,7 @@ _LAG = 0.025  # s
 
 
 def mechanical(model: Model) -> Model | None:
-    """The model without valve and chambers, driven by a force; None where its mechanics need the pressures."""
+    """The model without valve and chambers, driven by a force; None where its mechanics need the valve or the gas."""
     if model.force_driven:
         return model
     kept: list[str] = []
@@ -68,8 +68,9 @@ def driven_by_pressures(model: Model, run: Run) -> Run:
     force = model["piston.area_a"] * pressures[:, 0] - model["piston.area_b"] * pressures[:, 1]
     n = len(force)
     cells = np.repeat(np.arange(n - 1), PARTS) + np.tile((np.arange(PARTS) + 0.5) / PARTS, n - 1)
-    held = np.interp(cells, np.arange(n), force)
-    return replace(run, input=held, force_driven=True, pressure_a=None, pressure_b=None)
+    held, p_a, p_b = (np.interp(cells, np.arange(n), one) for one in (force, pressures[:, 0], pressures[:, 1]))
+    further = {**run.further, "p_a": p_a, "p_b": p_b}
+    return replace(run, input=held, further=further, force_driven=True, pressure_a=None, pressure_b=None)
 
 
 def event_rows(model: Model, runs: Sequence[Run], most: int = MOST_EVENTS) -> NDArray[np.int64]:

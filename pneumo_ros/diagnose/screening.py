@@ -38,7 +38,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
 
     Where base parameters are strained, also by the slope at neutral, by which they replace an effect.
     """
-    found = missing(base.model)
+    found = missing(base.model, base.everything.inputs)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
     if strain(base.offset) > STRAINED:
         tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]

@@ -1,6 +1,6 @@
 """Effects tried on breakaways and reversals: started at several sizes and shapes, fitted, judged by held-out events."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -72,7 +72,7 @@ def longer(
     if not poor:
         return model, None
     q = poor[0]
-    tried = SlipFits(alone, found, known, against, held, q, limits).tried(blind(screened, alone))
+    tried = SlipFits(alone, found, known, against, held, q, limits).tried(blind(screened, alone, found.inputs))
     effects = [coordinates(alone.library.find(c.name)) for c in tried]
     candidates = [
         as_candidate(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)
@@ -179,12 +179,12 @@ def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[s
     return {c.name: c.grown(model[c.name], factor) for c in effect if c.is_size}
 
 
-def blind(screened: Sequence[Hypothesis], alone: Model) -> list[str]:
+def blind(screened: Sequence[Hypothesis], alone: Model, measured: Collection[str]) -> list[str]:
     """Effects of the mechanics that the equations along the motion determine poorly, or that have states of their own.
 
-    Windows of the equations average over oscillations and lags shorter than a window.
+    Windows of the equations average over oscillations and lags shorter than a window. `measured`: inputs of the events.
     """
-    builds, library = missing(alone), alone.library
+    builds, library = missing(alone, measured), alone.library
     seen: dict[str, float] = {}
     for h in screened:
         spread = np.sqrt(np.maximum(np.diag(h.covariance), 1e-300)) if len(h.covariance) else np.array([np.inf])

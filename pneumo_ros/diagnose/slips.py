@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events, mechanical
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.problem import NOISE_TAIL
 from pneumo_ros.shooting.refit import refit_segments
@@ -43,6 +44,11 @@ class Slips:
     held_runs: tuple[Run, ...]
     train_rows: Rows
     held_rows: Rows
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs that all their runs hold."""
+        return measured_inputs([*self.train_runs, *self.held_runs])
 
     @property
     def judge(self) -> bool:

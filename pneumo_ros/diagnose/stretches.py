@@ -119,6 +119,7 @@ def stretch(run: Run, begin: float, end: float) -> Run:
         input=run.input[first * PARTS : last * PARTS],
         measured=measured,
         begin=run.begin + first * run.sample_time,
+        further={name: held[first * PARTS : last * PARTS] for name, held in run.further.items()},
     )
 
 

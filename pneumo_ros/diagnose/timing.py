@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import fit_base
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
+
+Array = NDArray[np.float64]
 
 EFFECT = "position_sensor_delay"
 SEEN = 5.0  # deviations from zero: a smaller delay is ignored
@@ -33,8 +36,13 @@ def lateness(model: Model, train: Sequence[Run]) -> float:
 
 
 def later(run: Run, seconds: float) -> Run:
-    """The run with its input delayed by `seconds`, to tenths of a sample."""
+    """The run with its inputs delayed by `seconds`, to tenths of a sample."""
     parts = min(round(seconds / run.sample_time * PARTS), len(run.input) - 1)
     if parts < 1:
         return run
-    return replace(run, input=np.concatenate([np.full(parts, run.input[0]), run.input[:-parts]]))
+    further = {name: _shifted(held, parts) for name, held in run.further.items()}
+    return replace(run, input=_shifted(run.input, parts), further=further)
+
+
+def _shifted(held: Array, parts: int) -> Array:
+    return np.concatenate([np.full(parts, held[0]), held[:-parts]])

@@ -86,5 +86,5 @@ def holding_force(model: Model, run: Run) -> Array:
     states[:, 0] = run.position
     if not model.force_driven:
         states[:, 2], states[:, 3] = run.signals["pressure_a_pa"], run.signals["pressure_b_pa"]
-    seen = model.outputs(states, np.append(run.held, run.held[-1]))
+    seen = model.outputs(states, run.sampled(model.inputs))
     return smooth(seen["drive"] - seen["force"], run.sample_time, 0.008, 2)

@@ -173,7 +173,7 @@ def measured_throughout(run: Run, bump: Bump) -> Mask:
 
 def sensitivity(model: Model, run: Run, states: Array, column: int, probe: float) -> Array:
     """Change of all derivatives (n, states) per unit of the state in `column`."""
-    held = np.append(run.held, run.held[-1])
+    held = run.sampled(model.inputs)
     pushed = states.copy()
     pushed[:, column] += probe
     change = model.derivatives(pushed, held, run.time) - model.derivatives(states, held, run.time)

@@ -57,7 +57,7 @@ def guess_states(model: Model, run: Run, at: Index) -> Guess:
         acceleration: Array = guess.acceleration[at]
         if not model.composition.true_sensors:
             acceleration += smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)[at]
-        _balance(model, chosen, run.held[np.minimum(at, len(run.held) - 1)], acceleration)
+        _balance(model, chosen, run.sampled(model.inputs)[at], acceleration)
     return Guess(chosen, _scale(model, run, states, frame))
 
 

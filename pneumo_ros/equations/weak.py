@@ -80,7 +80,7 @@ def _along(model: Model, run: Run) -> tuple[Array, Array]:
 
 def _momentum(model: Model, run: Run, states: Array, claimed: Array) -> Residual:
     bump, equation = Bump.of(MOMENTUM_WINDOW, run.sample_time), Momentum(model, run, states)
-    added = model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"]
+    added = model.outputs(states, run.sampled(model.inputs))["added_mass"]
     mass = model["piston.mass"] + added[bump.centres(len(run))]
     value = equation.value(bump, mass, states[:, 0], claimed[:, 1])
     return _residual("momentum", "N", run, bump, value, equation.noise(bump), equation.usable(bump))

@@ -55,6 +55,6 @@ def sliding_friction(model: Model, velocity: Array) -> Array:
         highest = max(model["lugre_friction.static_friction"], model["lugre_friction.coulomb_friction"])
         far = 10.0 * highest / model["lugre_friction.bristle_stiffness"]
         states[:, z] = np.sign(velocity) * far  # beyond z_max, where z' = v - rate z with the full rate
-        rate = (velocity - model.derivatives(states, np.zeros(len(states)))[:, z]) / states[:, z]
+        rate = (velocity - model.derivatives(states, None)[:, z]) / states[:, z]
         states[:, z] = velocity / rate
     return model.outputs(states)["friction"]

@@ -66,7 +66,7 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
     a, b = (_line(time, signal, rows) for signal in (run.pressure_a, run.pressure_b))
     position, velocity, acceleration = motion[0], motion[1], 2.0 * motion[2]
     held = run.held[starts]
-    drive, load, swing = _forces(model, position, velocity, a, b, held)
+    drive, load, swing = _forces(model, position, velocity, a, b, run.sampled(model.inputs)[starts])
     noise = _noise(model, run, width)
     friction = drive - load - model["piston.mass"] * acceleration
     span = width * run.sample_time

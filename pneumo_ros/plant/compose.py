@@ -21,26 +21,29 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect, Function, Parameter
 from pneumo_ros.plant.emit import module_text
+from pneumo_ros.plant.reach import inputs_of
 from pneumo_ros.plant.signals import SIGNALS
 
 OBSERVED = (
     "drive", "force", "friction", "static_level", "added_mass", "opening", "port_flow_a", "port_flow_b",
     "y_measured", "p_a_measured", "p_b_measured",
 )  # fmt: skip
-_OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "static_level", "added_mass", "y_measured")
+OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "static_level", "added_mass", "y_measured")
 SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # signal -> state that its sensor measures
 
 
 @dataclass(frozen=True)
 class Composition:
-    """Composed effects: states and parameters in kernel order, observed signals, and the module text.
+    """Composed effects: states, parameters and inputs in kernel order, observed signals, and the module text.
 
-    `sensed` holds the states that sensors measure; `true_sensors`: no effect changes the readings.
+    `inputs`: U, then the measured signals that the effects read; `sensed` holds the states that sensors measure;
+    `true_sensors`: no effect changes the readings.
     """
 
     effects: tuple[type[Effect], ...]
     states: tuple[str, ...]
     parameters: tuple[str, ...]  # dotted
+    inputs: tuple[str, ...]
     observed: tuple[str, ...]
     sensed: tuple[str, ...]
     true_sensors: bool
@@ -56,7 +59,7 @@ class Composition:
 
 
 # names the generated module uses itself
-_WORDS = """x q u h k s i j b c X _ out half middle elapsed voltage first t0 stride parts steps values np math LANES
+_WORDS = """x q u h k s i j b c X _ out half middle elapsed inputs row first t0 stride parts steps values np math LANES
 entry inline derivatives after_step observation sensing step step_lanes run run_lanes follow rates observe sense
 interval"""
 _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
@@ -68,6 +71,7 @@ class Resolver:
     def __init__(self, effects: tuple[type[Effect], ...]) -> None:
         self.effects = effects
         self.states: dict[str, type[Effect]] = {}
+        self.inputs = inputs_of(effects)
         self.owners: dict[str, list[str]] = {}
         self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects, and the function of each
         for effect in effects:
@@ -76,7 +80,8 @@ class Resolver:
 
     def _add(self, effect: type[Effect]) -> None:
         for state in effect.states:
-            if state in self.states or state in SIGNALS or state in _RESERVED:
+            signal = state in SIGNALS and SIGNALS[state].kind != "measured"
+            if state in self.states or signal or state in _RESERVED:
                 owner = self.states[state].name if state in self.states else "the kernel"
                 raise UsageError(
                     f"state {state} of effect {effect.name} is already taken by {owner}; choose another name"
@@ -92,7 +97,7 @@ class Resolver:
         for name in effect.functions[key].writes:
             if name not in SIGNALS and not name.startswith(("der_", "rate_")):
                 raise UsageError(f"effect {effect.name} returns {name!r}. {unknown_name('signal', name, SIGNALS)}")
-            if name in SIGNALS and SIGNALS[name].kind == "input":
+            if name in SIGNALS and SIGNALS[name].kind in ("input", "measured"):
                 raise UsageError(f"effect {effect.name} returns {name}, which is an input and cannot be written")
             self.writers.setdefault(name, []).append((effect, key))
 
@@ -153,9 +158,9 @@ def compose(effects: tuple[type[Effect], ...]) -> Composition:
                 resolver.check(effect.functions[key], effect)
     parameters = tuple(f"{effect.name}.{key}" for effect in effects for key in effect.parameters)
     states = tuple(resolver.states)
-    observed = OBSERVED if {"p_a", "p_b"} <= set(states) else _OBSERVED_WITHOUT_CHAMBERS
+    observed = OBSERVED if {"p_a", "p_b"} <= set(states) else OBSERVED_WITHOUT_CHAMBERS
     signals = tuple(name for name, state in SENSED.items() if state in states)
     true_sensors = not any(name in resolver.writers for name in signals)
     text = module_text(resolver, parameters, observed, () if true_sensors else signals)
     sensed = tuple(SENSED[name] for name in signals)
-    return Composition(effects, states, parameters, observed, sensed, true_sensors, text)
+    return Composition(effects, states, parameters, resolver.inputs, observed, sensed, true_sensors, text)

@@ -40,12 +40,14 @@ def module_text(
     sensing = _observation("sensing", resolver, book, states, sensed, names) if sensed else ""
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
-    parts += [step_text(resolver, states, rates, names), run_text(states, names), lanes_text(states, names)]
+    inputs = list(resolver.inputs)
+    parts += [step_text(resolver, states, rates, names)]
+    parts += [run_text(states, inputs, names), lanes_text(states, inputs, names)]
     parts += [follow_text(resolver, states, rates, names), follow_lanes_text(resolver, states, rates, names)]
-    parts += [pointwise_text("rates", "derivatives", states, len(states), names)]
-    parts += [pointwise_text("observe", "observation", states, len(observed), names)]
+    parts += [pointwise_text("rates", "derivatives", states, inputs, len(states), names)]
+    parts += [pointwise_text("observe", "observation", states, inputs, len(observed), names)]
     if sensed:
-        parts += [sensing, sense_text(states, len(sensed), names)]
+        parts += [sensing, sense_text(states, inputs, len(sensed), names)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -58,7 +60,7 @@ def _derivatives(resolver: "Resolver", book: SourceBook, states: list[str], rate
     flow = FlowWriter(resolver, book)
     wanted = [f"der_{s}" for s in states] + [f"rate_{s}" for s in rates]
     returns = [flow.value(w) if w in resolver.writers else "0.0" for w in wanted]
-    return _function("derivatives", [*states, "U", "t", *names], flow.lines, returns)
+    return _function("derivatives", [*states, *resolver.inputs, "t", *names], flow.lines, returns)
 
 
 def _after_step(resolver: "Resolver", book: SourceBook, states: list[str], names: list[str]) -> str:
@@ -66,7 +68,7 @@ def _after_step(resolver: "Resolver", book: SourceBook, states: list[str], names
     for effect in resolver.effects:
         if "advance" in effect.functions:
             flow.advance(effect)
-    return _function("after_step", [*states, "U", "t", *names], flow.lines, states)
+    return _function("after_step", [*states, *resolver.inputs, "t", *names], flow.lines, states)
 
 
 def _observation(
@@ -74,4 +76,4 @@ def _observation(
 ) -> str:
     flow = FlowWriter(resolver, book)
     returns = [flow.value(signal) for signal in observed]
-    return _function(name, [*states, "U", "t", *names], flow.lines, returns)
+    return _function(name, [*states, *resolver.inputs, "t", *names], flow.lines, returns)

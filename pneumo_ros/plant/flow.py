@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.reach import names_in
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.plant.source import SourceBook
 
@@ -52,7 +53,7 @@ class FlowWriter:
             self._call(*writers[0])
             return f"{writers[0][0].name}__{name}"
         kind = SIGNALS[name].kind
-        if kind == "input":
+        if kind in ("input", "measured"):
             return name
         if kind == "single":
             return self._single(name, writers)
@@ -90,6 +91,8 @@ class FlowWriter:
     def _default(self, name: str) -> str:
         """Emit the default expression of a single signal with every name in it resolved."""
         tree: Any = ast.parse(SIGNALS[name].default, mode="eval")
+        if SIGNALS[name].without and any(self._lacks(key) for key in names_in(SIGNALS[name].default)):
+            return SIGNALS[name].without
         for node in ast.walk(tree):
             if isinstance(node, ast.Name) and hasattr(maths, node.id):
                 node.id = self.book.helper(getattr(maths, node.id), f"signal {name}")
@@ -101,9 +104,13 @@ class FlowWriter:
         return name
 
     def _known(self, name: str, wanted: str) -> str:
-        if name not in self.resolver.states and name not in SIGNALS and self.resolver.parameter(name, None) is None:
+        if self._lacks(name):
             raise UsageError(f"{wanted} is needed, but no effect listed sets it and its default needs {name}")
         return self.value(name)
+
+    def _lacks(self, name: str) -> bool:
+        states = self.resolver.states
+        return name not in states and name not in SIGNALS and self.resolver.parameter(name, None) is None
 
     def _call(self, effect: type[Effect], function: str) -> None:
         if (effect.name, function) in self._called:

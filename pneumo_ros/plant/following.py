@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pneumo_ros.plant.entries import LANES, unpack
+from pneumo_ros.plant.entries import LANES, take, unpack
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.plant.stepping import evaluate, half_step, is_velocity, kick, whole_step
 
@@ -24,7 +24,7 @@ def _indented(lines: list[str], depth: int) -> str:
 def _step_lines(
     resolver: "Resolver", states: list[str], rates: list[str], names: list[str], ends: Callable[[int], tuple[str, str]]
 ) -> list[str]:
-    """Lines of one step with U held from t on; `ends`: measured state i at the samples before and after the step."""
+    """Lines of one step with inputs held from t on; `ends`: measured state i at the samples before and after it."""
     measured, own = _split(resolver, states)
 
     def between(suffix: str, share: str) -> list[str]:
@@ -34,34 +34,35 @@ def _step_lines(
             for s, (begin, end) in zip(measured, texts, strict=True)
         ]
 
-    lines = ["half = 0.5 * h", *between("", "(s / steps)"), evaluate(states, rates, names, "", "t")]
+    lines = ["half = 0.5 * h", *between("", "(s / steps)"), evaluate(resolver, rates, names, "", "t")]
     lines += [*between("_m", "((s + 0.5) / steps)"), *(half_step(s, rates) for s in own)]
-    lines += [evaluate(states, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / steps)")]
+    lines += [evaluate(resolver, rates, names, "_m", "t + half"), *between("_n", "((s + 1) / steps)")]
     lines += [f"mean_{s} += d_{s}" for s in states]
     swinging = [s for s in own if is_velocity(s, resolver)]
     if swinging:
         lines += kick(swinging, rates)
-        lines.append(evaluate(states, rates, names, "_m", "t + half"))
+        lines.append(evaluate(resolver, rates, names, "_m", "t + half"))
     lines += [whole_step(s, rates, "relaxation") for s in own if s not in swinging]
     targets = ", ".join(s if s in own else "_" for s in states) + ","
-    return [*lines, f"{targets} = after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})"]
+    inputs = resolver.inputs
+    return [*lines, f"{targets} = after_step({', '.join([*(s + '_n' for s in states), *inputs, 't + h', *names])})"]
 
 
 def follow_text(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
     """The entry point that drives the effects along a measured motion."""
     _, own = _split(resolver, states)
-    lines = ["U = voltage[k * parts + s // stride]", "t = t0 + (k * steps + s) * h"]
+    lines = [*take(list(resolver.inputs), "k * parts + s // stride"), "t = t0 + (k * steps + s) * h"]
     lines += _step_lines(resolver, states, rates, names, lambda i: (f"X[k, {i}]", f"X[k + 1, {i}]"))
     load = [f"{s} = X[0, {states.index(s)}]" for s in own]
     clear = [f"mean_{s} = 0.0" for s in states]
     keep = [f"X[k + 1, {states.index(s)}] = {s}" for s in own]
     store = [f"out[k + 1, {i}] = mean_{s} / steps" for i, s in enumerate(states)]
     return f'''@entry
-def follow(X, q, voltage, t0, h, stride, parts, out):
+def follow(X, q, inputs, t0, h, stride, parts, out):
     """Advance the effects' own states along measured motion and pressures, interpolated between samples.
 
     X (samples, states): the frame's columns are given, the others are filled in from row 0 on; out (samples, states):
-    mean derivatives over the interval that ends there, in which `parts` voltages are held for `stride` steps each.
+    mean derivatives over the interval that ends there, in which `parts` inputs are held for `stride` steps each.
     """
 {unpack(names, "q", "{0}")}
 {_indented(load, 1)}
@@ -78,6 +79,7 @@ def follow_lanes_text(resolver: "Resolver", states: list[str], rates: list[str],
     """The same for many lanes at once, and the function that advances one block of them."""
     measured, own = _split(resolver, states)
     n, m, width = len(states), len(measured), len(names)
+    held = ", ".join(f"inputs[row, {i}]" for i in range(len(resolver.inputs)))
 
     def at(array: str, row: int) -> str:
         return f"{array}[{row * LANES} + i]"
@@ -89,13 +91,13 @@ def follow_lanes_text(resolver: "Resolver", states: list[str], rates: list[str],
     lines += [f"{at('x', states.index(s))} = {s}" for s in own]
     lines += [f"{at('x', n + i)} = mean_{s}" for i, s in enumerate(states)]
     return f'''@inline
-def follow_block(x, c, U, t, h, s, steps):
+def follow_block(x, c, {", ".join(resolver.inputs)}, t, h, s, steps):
     for i in range(LANES):
 {_indented(lines, 2)}
 
 
 @entry
-def follow_lanes(measured, q, rest, voltage, t0, h, stride, parts, kept, X, wanted, out):
+def follow_lanes(measured, q, rest, inputs, t0, h, stride, parts, kept, X, wanted, out):
     """As `follow` for many lanes, each with its own parameters, in blocks of LANES.
 
     measured (lanes or 1, samples, {m}), q (lanes, parameters), rest (lanes, {n - m}); X (lanes, samples, kept): states
@@ -124,7 +126,8 @@ def follow_lanes(measured, q, rest, voltage, t0, h, stride, parts, kept, X, want
                 for j in range({m}):
                     c[({width} + j) * LANES + i] = measured[lane, k + 1, j]
             for s in range(steps):
-                follow_block(x, c, voltage[k * parts + s // stride], t0 + (k * steps + s) * h, h, s, steps)
+                row = k * parts + s // stride
+                follow_block(x, c, {held}, t0 + (k * steps + s) * h, h, s, steps)
             for j in range({m * LANES}):  # to assign a slice would take two seconds to compile
                 x[j] = c[{width * LANES} + j]
             for j in range({n * LANES}, {2 * n * LANES}):

@@ -1,12 +1,13 @@
 """Sentences on what a machine file lacks and what to add: effects that others need, and parameters."""
 
-import ast
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 from pneumo_ros.files import yaml_number
-from pneumo_ros.plant.compose import Composition
+from pneumo_ros.plant.compose import OBSERVED, OBSERVED_WITHOUT_CHAMBERS, Composition
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.reach import acting, names_in
 from pneumo_ros.plant.signals import SIGNALS
 
 
@@ -22,7 +23,26 @@ def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
             owner, _, key = name.rpartition("__")
             owners = [owner] if owner else [one.name for one in _all(library) if key in (*one.states, *one.parameters)]
             if len(owners) == 1 and owners[0] not in here and owners[0] in (*FRAME, *library.names()):
-                return _sentence(effect.name, key, _find(library, owners[0]))
+                return _sentence(effect.name, f"it reads {key}", _find(library, owners[0]))
+    return None
+
+
+@lru_cache(maxsize=256)
+def without_chambers(effects: tuple[type[Effect], ...], library: Library) -> str | None:
+    """A sentence for the first effect that acts on chambers alone, which are not among `effects`; else None."""
+    here = [effect.name for effect in effects]
+    if "chambers" in here:
+        return None
+    chambers = library.frame("chambers")
+    own = [state for effect in effects if effect.name in FRAME for state in effect.states]
+    acts = acting(effects, (*own, *OBSERVED_WITHOUT_CHAMBERS))
+    for effect in effects:
+        if any(SIGNALS[name].kind in ("input", "measured") for name in _written(effect) & SIGNALS.keys()):
+            return None  # which `compose` refuses
+        if effect.name not in acts and effect.name in acting((*effects, chambers), (*own, *chambers.states, *OBSERVED)):
+            names = [name for function in effect.functions.values() for name in function.reads]
+            key = next((name for name in names if name in (*chambers.states, *chambers.parameters)), "")
+            return _sentence(effect.name, f"it reads {key}" if key else "it acts on them alone", chambers)
     return None
 
 
@@ -40,14 +60,14 @@ def missing_parameters(composition: Composition, absent: Sequence[str]) -> str:
     return "\n".join([f"{named} missing; add to the sections (values shown are defaults):", *lines])
 
 
-def _sentence(reader: str, key: str, needed: type[Effect]) -> str:
+def _sentence(reader: str, why: str, needed: type[Effect]) -> str:
     name = needed.name
     section = f"section '{name}' with {', '.join(needed.parameters)}"
     if name in FRAME:
         without = " (a machine without chambers is driven by a measured force)" if name == "chambers" else ""
-        return f"effect {reader} needs section '{name}' (it reads {key}); add {section}{without}"
+        return f"effect {reader} needs section '{name}' ({why}); add {section}{without}"
     also = f", and {section}" if needed.parameters else ""
-    return f"effect {reader} needs effect {name} (it reads {key}); add {name} to 'effects'{also}, or leave {reader} out"
+    return f"effect {reader} needs effect {name} ({why}); add {name} to 'effects'{also}, or leave {reader} out"
 
 
 def _read(effect: type[Effect], known: set[str]) -> Iterator[str]:
@@ -55,8 +75,7 @@ def _read(effect: type[Effect], known: set[str]) -> Iterator[str]:
     for function in effect.functions.values():
         for name in function.reads:
             if name in SIGNALS and name not in known:
-                tree = ast.parse(SIGNALS[name].default, mode="eval")
-                names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
+                names = [] if SIGNALS[name].without else names_in(SIGNALS[name].default)
                 yield from (one for one in names if one not in known and one not in SIGNALS)
             elif name not in known:
                 yield name

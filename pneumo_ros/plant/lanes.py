@@ -46,7 +46,7 @@ def _pool(process: int) -> "ThreadPoolExecutor":
 
 
 def run_lanes(
-    kernel: ModuleType, states: Array, parameters: Array, voltage: Array, first: NDArray[np.int64], start: Array,
+    kernel: ModuleType, states: Array, parameters: Array, inputs: Array, first: NDArray[np.int64], start: Array,
     h: float, stride: int, parts: int, samples: int, threads: int, columns: Sequence[int] | None = None,
 ) -> Array:  # fmt: skip
     """Run `kernel.run_lanes` over all lanes, on `threads` threads; returns (lanes, samples, states or columns)."""
@@ -61,7 +61,7 @@ def run_lanes(
     out = np.empty((len(x), samples, n * width))
 
     def part(which: slice) -> None:
-        kernel.run_lanes(x[which], q[which], voltage, f[which], t[which], h, stride, parts, out[which])
+        kernel.run_lanes(x[which], q[which], inputs, f[which], t[which], h, stride, parts, out[which])
 
     _share(part, len(x), threads)
     kept = out.reshape(len(x), samples, n, width)
@@ -89,7 +89,7 @@ def fitting(
 
 
 def follow_lanes(
-    kernel: ModuleType, measured: Array, voltage: Array, rest: Array, parameters: Array,
+    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
     kept: NDArray[np.int64], wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Run `kernel.follow_lanes` over all lanes, on `threads` threads; returns the kept states, wanted derivatives.
@@ -105,7 +105,7 @@ def follow_lanes(
         which = slice(blocks.start * width, blocks.stop * width)
         given = measured if len(measured) == 1 else measured[which]
         kernel.follow_lanes(
-            given, parameters[which], rest[which], voltage, start, h, stride, parts, kept, X[which], wanted, out[which]
+            given, parameters[which], rest[which], inputs, start, h, stride, parts, kept, X[which], wanted, out[which]
         )
 
     if count:

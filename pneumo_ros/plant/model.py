@@ -12,8 +12,9 @@ from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.compose import Composition, compose
 from pneumo_ros.plant.effect import Effect, Parameter
+from pneumo_ros.plant.held import held_inputs, input_rows
 from pneumo_ros.plant.kernels import load_kernel
-from pneumo_ros.plant.lacking import lacking, missing_parameters
+from pneumo_ros.plant.lacking import lacking, missing_parameters, without_chambers
 from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.usual import usual_size
@@ -56,6 +57,8 @@ class Model:
         if repeated:
             raise UsageError(f"effect {repeated[0]} is listed twice")
         parts = (*(library.frame(f) for f in frame), *(library.find(n) for n in names))
+        if sentence := without_chambers(parts, library):
+            raise UsageError(sentence)
         try:
             composition = compose(parts)
         except UsageError as problem:
@@ -80,6 +83,11 @@ class Model:
     def imposed(self) -> bool:
         """Whether a test machine imposes the motion: the momentum equation is not judged."""
         return "imposed_motion" in self.effects
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the held inputs: U, then the measured signals that effects read and that are no states here."""
+        return self.composition.inputs
 
     @property
     def force_driven(self) -> bool:
@@ -197,12 +205,13 @@ class Model:
     ) -> Array:
         """Integrate from `state` (states,) while voltage[k] [V] is held over sample k; returns (samples, states).
 
+        A model with several `inputs` takes (samples, inputs) instead, here and in all other methods.
         Row k is the state at the END of sample k. `sample_time` [s] is divided into equal steps no longer than `step`
         [s]; `start` [s] is the time of the first sample. With `parts` > 1 a sample holds that many voltages one after
         another. Raises NumericalError, with the time, when the state leaves the finite numbers, and UsageError for a
         step that is not positive or a voltage that does not fill whole samples.
         """
-        held, x = _voltages(voltage), self._state_vector(state)
+        held, x = held_inputs(voltage, self.inputs), self._state_vector(state)
         out = np.empty((_whole(len(held), parts), len(x)))
         stride, h = substeps(sample_time / parts, step)
         self.kernel.run(x, self.values, held, start, h, stride, parts, out)
@@ -239,7 +248,7 @@ class Model:
         """
         x = np.array(states, dtype=float, ndmin=2)
         q = np.tile(self.values, (len(x), 1)) if parameters is None else np.array(parameters, dtype=float)
-        held = _voltages(voltage)
+        held = held_inputs(voltage, self.inputs)
         begin = np.zeros(len(x), dtype=np.int64) if first is None else np.asarray(first, dtype=np.int64)
         if x.shape[1] != len(self.states) or q.shape != (len(x), len(self.parameters)) or begin.shape != (len(x),):
             raise UsageError(
@@ -280,7 +289,7 @@ class Model:
         X[:, : given.shape[1]] = given
         X[0, given.shape[1] :] = tail
         out = np.empty_like(X)
-        held = np.array(voltage, dtype=float)
+        held = held_inputs(voltage, self.inputs)
         if _whole(len(held), parts) < len(X) - 1:
             raise UsageError(f"{len(held)} voltages do not cover {len(X)} samples")
         stride, h = substeps(sample_time / parts, step)
@@ -312,7 +321,7 @@ class Model:
         """
         frame = 2 if self.force_driven else 4
         given, tail, q = fitting(measured, rest, parameters, frame, len(self.states) - frame, len(self.parameters))
-        held = np.array(voltage, dtype=float, ndmin=1)
+        held = held_inputs(voltage, self.inputs)
         if _whole(len(held), parts) < given.shape[1] - 1:
             raise UsageError(f"{len(held)} voltages do not cover {given.shape[1]} samples")
         stride, h = substeps(sample_time / parts, step)
@@ -332,16 +341,12 @@ class Model:
         """Signals along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
 
         `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract; the others as in `signals`.
-        voltage (samples,) or one for all. Raises UsageError for too few.
+        voltage (samples,) or one for all, None for 0. Raises UsageError for too few.
         """
         X = np.array(states, dtype=float, ndmin=2)
-        U = np.zeros(len(X)) if voltage is None else np.array(voltage, dtype=float, ndmin=1)
-        if len(U) == 1:
-            U = np.repeat(U, len(X))
-        if len(U) < len(X):  # the kernel would read beyond their end
-            raise UsageError(f"{len(U)} voltages do not cover {len(X)} samples")
+        held = input_rows(voltage, self.inputs, len(X))
         observed = np.empty((len(X), len(self.composition.observed)))
-        self.kernel.observe(X, self.values, U, start + sample_time * np.arange(1, len(X) + 1), observed)
+        self.kernel.observe(X, self.values, held, start + sample_time * np.arange(1, len(X) + 1), observed)
         result = {name: X[:, i] for i, name in enumerate(self.states)}
         result |= {name: observed[:, i] for i, name in enumerate(self.composition.observed)}
         result["effort"] = result["drive"] if self.force_driven else self.effort(X)
@@ -354,12 +359,15 @@ class Model:
         atmosphere = self["air.atmospheric_pressure"] * (area_a - area_b)
         return np.asarray(area_a * states[..., a] - area_b * states[..., b] - atmosphere)
 
-    def derivatives(self, states: ArrayLike, voltage: ArrayLike, time: ArrayLike = 0.0) -> Array:
-        """Right-hand sides (samples, states) of the model's equations at the given states (samples, states)."""
+    def derivatives(self, states: ArrayLike, voltage: ArrayLike | None, time: ArrayLike = 0.0) -> Array:
+        """Right-hand sides (samples, states) of the model's equations at the given states (samples, states).
+
+        voltage as in `outputs`; time [s], (samples,) or one for all.
+        """
         X = np.array(states, dtype=float, ndmin=2)
         out = np.empty_like(X)
-        U, t = (np.array(np.broadcast_to(a, len(X)), dtype=float) for a in (voltage, time))
-        self.kernel.rates(X, self.values, U, t, out)
+        t = np.array(np.broadcast_to(time, len(X)), dtype=float)
+        self.kernel.rates(X, self.values, input_rows(voltage, self.inputs, len(X)), t, out)
         return out
 
     def _state_vector(self, state: ArrayLike) -> Array:
@@ -375,13 +383,6 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
     stride = max(1, math.ceil(sample_time / step - 1e-9))
     return stride, sample_time / stride
-
-
-def _voltages(voltage: ArrayLike) -> Array:
-    held = np.atleast_1d(np.asarray(voltage, dtype=float))  # no copy: fits call this often, with minutes of data
-    if held.ndim > 1 or not np.isfinite(held).all():
-        raise UsageError(f"voltage of shape {held.shape} must be one row of finite numbers [V]")
-    return held
 
 
 def _whole(voltages: int, parts: int) -> int:

@@ -3,31 +3,42 @@
 Frames and signs: positive `y` extends the rod and grows chamber a. Forces are positive when they oppose positive
 velocity. Mass flows are positive INTO the chamber they are named after. Pressures are absolute.
 
-Kinds: an *input* comes from outside; contributions to a *sum* add, those to a *product* multiply; a *single* has one
-source or its default, and any number of effects may read and rewrite it, in the order of the effects list.
+Kinds: an *input* comes from outside; a *measured* signal does too, in machines without a state of that name, and only
+where an effect reads it; contributions to a *sum* add, those to a *product* multiply; a *single* has one source or its
+default, and any number of effects may read and rewrite it, in the order of the effects list.
 """
 
 from dataclasses import dataclass
 from typing import Literal
 
-Kind = Literal["input", "sum", "product", "single"]
+Kind = Literal["input", "measured", "sum", "product", "single"]
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One row: name as it stands in equations, kind, unit, default (a number or an expression) and meaning."""
+    """One row: name as it stands in equations, kind, unit, default (a number or an expression) and meaning.
+
+    `without`: the default of a machine that lacks a parameter in `default`; empty where it must have it.
+    """
 
     name: str
     kind: Kind
     unit: str
     default: str
     meaning: str
+    without: str = ""
 
 
 _TABLE = (
     # inputs
     Signal("U", "input", "V", "0.0", "valve voltage, held over a sample"),
     Signal("t", "input", "s", "0.0", "time since the start"),
+    Signal(
+        "p_a", "measured", "Pa", "0.0", "measured pressure in chamber a, absolute; a state where there are chambers"
+    ),
+    Signal(
+        "p_b", "measured", "Pa", "0.0", "measured pressure in chamber b, absolute; a state where there are chambers"
+    ),
     # valve
     Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
     Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),
@@ -35,7 +46,7 @@ _TABLE = (
     Signal("opening", "single", "V", "spool", "spool position beyond the dead zone"),
     Signal("supply_drop", "sum", "Pa", "0.0", "pressure lost between supply and valve"),
     Signal("p_s", "single", "Pa", "supply_pressure - supply_drop", "supply pressure at the valve, absolute"),
-    Signal("p_atm", "single", "Pa", "atmospheric_pressure", "pressure of the atmosphere, absolute"),
+    Signal("p_atm", "single", "Pa", "atmospheric_pressure", "pressure of the atmosphere, absolute", "101325.0"),
     Signal("valve_flow_a", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber a"),
     Signal("valve_flow_b", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber b"),
     # lines and chambers
@@ -73,3 +84,4 @@ _TABLE = (
 )
 
 SIGNALS: dict[str, Signal] = {signal.name: signal for signal in _TABLE}
+DRIVE = "U"  # the input of every machine: valve voltage [V], or driving force [N] without chambers

@@ -6,10 +6,11 @@ if TYPE_CHECKING:
     from pneumo_ros.plant.compose import Resolver
 
 
-def evaluate(states: list[str], rates: list[str], names: list[str], suffix: str, time: str) -> str:
+def evaluate(resolver: "Resolver", rates: list[str], names: list[str], suffix: str, time: str) -> str:
     """Line that evaluates all derivatives at the states with `suffix`."""
-    slopes = ", ".join([f"d_{s}" for s in states] + [f"r_{s}" for s in rates]) + ","
-    return f"{slopes} = derivatives({', '.join([*(s + suffix for s in states), 'U', time, *names])})"
+    slopes = ", ".join([f"d_{s}" for s in resolver.states] + [f"r_{s}" for s in rates]) + ","
+    arguments = [*(s + suffix for s in resolver.states), *resolver.inputs, time, *names]
+    return f"{slopes} = derivatives({', '.join(arguments)})"
 
 
 def half_step(s: str, rates: list[str]) -> str:
@@ -37,12 +38,13 @@ def kick(velocities: list[str], rates: list[str]) -> list[str]:
 def step_text(resolver: "Resolver", states: list[str], rates: list[str], names: list[str]) -> str:
     """The inlined function `step`."""
     velocities = [s for s in states if is_velocity(s, resolver)]
-    lines = ["half = 0.5 * h", "middle = t + half", evaluate(states, rates, names, "", "t")]
+    lines = ["half = 0.5 * h", "middle = t + half", evaluate(resolver, rates, names, "", "t")]
     lines += [half_step(s, rates) for s in states]
-    lines.append(evaluate(states, rates, names, "_m", "middle"))
+    lines.append(evaluate(resolver, rates, names, "_m", "middle"))
     lines += kick(velocities, rates)
-    lines.append(evaluate(states, rates, names, "_m", "middle"))
+    lines.append(evaluate(resolver, rates, names, "_m", "middle"))
     lines += [whole_step(s, rates, "relaxation") for s in states if s not in velocities]
-    lines.append(f"return after_step({', '.join([*(s + '_n' for s in states), 'U', 't + h', *names])})")
+    inputs = resolver.inputs
+    lines.append(f"return after_step({', '.join([*(s + '_n' for s in states), *inputs, 't + h', *names])})")
     body = "\n".join("    " + line for line in lines)
-    return f"@inline\ndef step({', '.join([*states, 'U', 't', 'h', *names])}):\n{body}"
+    return f"@inline\ndef step({', '.join([*states, *inputs, 't', 'h', *names])}):\n{body}"

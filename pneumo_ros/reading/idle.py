@@ -47,13 +47,16 @@ def idle_notes(model: Model, run: Run) -> list[str]:
 
 
 def _check_alive(run: Run) -> None:
-    """Raises DataError for a pressure that does not change, or shows noise alone, while the piston travels."""
+    """Raises DataError for a pressure that does not change, or shows noise alone, while the piston travels.
+
+    Where another force than the pressures' moves the piston, they may be constant.
+    """
     noise, (out, back) = run.noise, _travel(run, 0)
     for name, signal in run.signals.items():
         fixed = np.ptp(signal) == 0.0 and max(out, back) > _TRAVEL
         # A steady motion one way does not change the pressures; the motion back does.
         flat = np.std(signal) < _FLAT * noise[name] and min(out, back) > _TRAVEL
-        if name != "position_m" and (fixed or flat):
+        if name != "position_m" and (fixed or flat) and not run.force_driven:
             raise DataError(
                 f"{run.name}: {_TOPICS[name]} stays at {signal.mean():.6g} Pa, within {np.ptp(signal):.3g} Pa of "
                 f"noise, while the piston travels {out:.3g} m out and {back:.3g} m back: its sensor is dead or not "
@@ -140,7 +143,7 @@ def _fills(model: Model, run: Run, start: int, stop: int) -> float:
     supply, atmosphere = model["air.supply_pressure"], model["air.atmospheric_pressure"]
     half, y = 0.5 * (supply + atmosphere), float(run.position[start])
     states = np.tile(model.state(y=y, p_a=half, p_b=half), (stop - start, 1))
-    seen = model.outputs(states, np.append(run.held, run.held[-1])[start:stop], sample_time=run.sample_time)
+    seen = model.outputs(states, run.sampled(model.inputs)[start:stop], sample_time=run.sample_time)
     passed = np.cumsum(seen["port_flow_a"] - seen["port_flow_b"]) * 0.5 * run.sample_time
     a, b = (
         model["chambers.volume_a"] + model["piston.area_a"] * y,

@@ -43,10 +43,15 @@ def check_use(recording: Recording, force_driven: bool, imposed: bool = False) -
             "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
         )
     if not force_driven:
-        pressures = {"chamber_a/pressure": recording.pressure_a, "chamber_b/pressure": recording.pressure_b}
-        given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
-        for topic, pressure in given.items():
-            _check_size(recording, topic, pressure, list(given.values()))
+        check_pressures(recording)
+
+
+def check_pressures(recording: Recording) -> None:
+    """Raises DataError for chamber pressures that are not in the range of absolute pressures in Pa."""
+    pressures = {"chamber_a/pressure": recording.pressure_a, "chamber_b/pressure": recording.pressure_b}
+    given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
+    for topic, pressure in given.items():
+        _check_size(recording, topic, pressure, list(given.values()))
 
 
 def _check_time(recording: Recording) -> None:

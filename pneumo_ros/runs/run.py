@@ -1,6 +1,7 @@
 """A recording laid on a uniform time grid, as the integrator and the estimators need it."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.records import Recording
 from pneumo_ros.records.unfit import check_use
 from pneumo_ros.runs.noise import noise_level
@@ -19,6 +21,7 @@ PARTS = 10  # the input is held over tenths of a sample, so that a command betwe
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
 # the best sensors of such machines
 _FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3}
+SENSORS = {"p_a": "chamber_a/pressure", "p_b": "chamber_b/pressure"}  # topic of each input that is measured
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
 
@@ -34,6 +37,7 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
+    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held: p_a and p_b [Pa]
     imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the input is the
     # velocity [m/s] and pressures are predicted
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
@@ -50,6 +54,37 @@ class Run:
     def held(self) -> Array:
         """(n - 1,) input over each interval, the mean of its parts."""
         return np.asarray(self.input.reshape(-1, PARTS).mean(axis=1))
+
+    def inputs(self, names: tuple[str, ...]) -> Array:
+        """The inputs of a model ((n - 1) * PARTS, names), held over tenths of a sample; U is `input`.
+
+        Raises DataError for an input that the recording lacks.
+        """
+        if names == (DRIVE,):
+            return self.input.reshape(-1, 1)
+        if names not in self._stacked:
+            self._stacked[names] = np.stack([self._held_input(name) for name in names], axis=1)
+        return self._stacked[names]
+
+    def sampled(self, names: tuple[str, ...]) -> Array:
+        """The inputs of a model (n, names) from each sample on, the mean until the next; the last one is repeated.
+
+        Raises DataError for an input that the recording lacks.
+        """
+        means = self.inputs(names).reshape(-1, PARTS, len(names)).mean(axis=1)
+        return np.concatenate([means, means[-1:]])
+
+    def _held_input(self, name: str) -> Array:
+        if name != DRIVE and name not in self.further:
+            raise DataError(
+                f"{self.name} has no {SENSORS.get(name, name)}, which the model reads as {name}; record it, or leave "
+                "out the effects that read it"
+            )
+        return self.input if name == DRIVE else self.further[name]
+
+    @cached_property
+    def _stacked(self) -> dict[tuple[str, ...], Array]:
+        return {}
 
     @cached_property
     def force(self) -> Array:
@@ -112,9 +147,11 @@ def make_run(recording: Recording, force_driven: bool | None = None, imposed: bo
         held = np.repeat(np.diff(position) / step, PARTS)
     else:
         held = np.interp(cells, time, _force(recording)) if driven else _commands_at(recording, cells)
+    pressures = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
+    further = {name: np.interp(cells, time, p) for name, p in pressures.items() if p is not None}
     return Run(
         recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
-        distance < _GAP * step, driven, imposed or (driven and recording.imposed),
+        distance < _GAP * step, driven, further, imposed or (driven and recording.imposed),
     )  # fmt: skip
 
 

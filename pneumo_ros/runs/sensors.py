@@ -33,9 +33,8 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
     rest = model.state()[frame.shape[1] :]
 
     def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
-        states, rates = model.follow(
-            given[0], run.input, rest, sample_time=run.sample_time, start=run.begin, parts=PARTS
-        )
+        held = run.inputs(model.inputs)
+        states, rates = model.follow(given[0], held, rest, sample_time=run.sample_time, start=run.begin, parts=PARTS)
         return states[None], rates[None]
 
     if model.composition.true_sensors:
@@ -77,9 +76,10 @@ def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) 
 
     parameters (lanes, parameters) or None for the model's own.
     """
-    voltage = np.concatenate([run.input[:PARTS], run.input])  # row k is read under the last voltage before it
+    held = run.inputs(model.inputs)
+    held = np.concatenate([held[:PARTS], held])  # row k is read under the last inputs before it
     first, dt = np.zeros(len(states), dtype=np.int64), run.sample_time
-    read = sense(model, states, parameters, voltage, first, sample_time=dt, start=run.begin - dt, parts=PARTS)
+    read = sense(model, states, parameters, held, first, sample_time=dt, start=run.begin - dt, parts=PARTS)
     columns = [model.states.index(name) for name in model.composition.sensed]
     return np.asarray(states[:, :, columns] - read)
 

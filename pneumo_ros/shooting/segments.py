@@ -25,8 +25,8 @@ _WRONG = 1e9  # noise deviations: limit of an error, so that its square stays fi
 class Segments:
     """Segments of equal length; arrays hold one row per segment.
 
-    first: index of each segment's first entry in `voltage`, the inputs during all segments; start [s]: time of
-    voltage[0] by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
+    first: index of each segment's first row in `inputs` (rows, inputs), those during all segments; start [s]: time of
+    inputs[0] by the clock of the segment's run; measured and weight (segments, samples, signals), weight =
     1 / noise, or 0 where nothing was measured; guess and scale (segments, states): initial states and their prior
     deviations; shown (segments, signals): sensor readings at the guess by the model that made it; columns: the states
     that the signals show.
@@ -34,7 +34,7 @@ class Segments:
 
     sample_time: float
     samples: int
-    voltage: Array
+    inputs: Array
     first: Index
     start: Array
     measured: Array
@@ -81,8 +81,8 @@ class Segments:
         """
         if self.sample_time / self.parts > 0.5 * _COARSE * (1.0 + 1e-6) or self.parts % 2:
             return replace(self, step=_COARSE)
-        pairs = self.voltage.reshape(-1, 2).mean(axis=1)
-        return replace(self, voltage=pairs, first=self.first // 2, parts=self.parts // 2, step=_COARSE)
+        pairs = self.inputs.reshape(-1, 2, self.inputs.shape[1]).mean(axis=1)
+        return replace(self, inputs=pairs, first=self.first // 2, parts=self.parts // 2, step=_COARSE)
 
     def from_guess(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
         """Distance of states (copies * segments, states) from the guesses, in scales: (copies, segments, states).
@@ -109,7 +109,7 @@ class Segments:
         """Sensor readings at initial states (copies * segments, states): (copies, segments, signals)."""
         copies = self._copies(states)
         read = sense(
-            model, states[:, None], parameters, self.voltage, np.tile(self.first, copies),
+            model, states[:, None], parameters, self.inputs, np.tile(self.first, copies),
             sample_time=self.sample_time, start=np.tile(self.start - self.sample_time, copies), parts=self.parts,
         )  # fmt: skip
         return read.reshape(copies, *self.shown.shape)
@@ -121,7 +121,7 @@ class Segments:
         """(lanes, samples, states or columns) from initial states (lanes, states), lanes a multiple of the segments."""
         copies = self._copies(states)
         return model.simulate_lanes(
-            self.voltage, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
+            self.inputs, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
             sample_time=self.sample_time, step=self.step, start=np.tile(self.start, copies), parts=self.parts,
             threads=threads, columns=columns,
         )  # fmt: skip
@@ -146,7 +146,7 @@ class Segments:
             return self.simulate(model, states, parameters, threads, self.columns)
         copies = self._copies(states)
         return sense(
-            model, self.simulate(model, states, parameters, threads), parameters, self.voltage,
+            model, self.simulate(model, states, parameters, threads), parameters, self.inputs,
             np.tile(self.first, copies), sample_time=self.sample_time, start=np.tile(self.start, copies),
             parts=self.parts,
         )  # fmt: skip
@@ -179,7 +179,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
                 "resample them to one sample time"
             )
     names = measured_columns(model)
-    voltage, first = _inputs(runs, starts, samples)
+    inputs, first = _inputs(model, runs, starts, samples)
     measured, weight = [], []
     for run, begin in zip(runs, starts, strict=True):
         rows = begin[:, None] + np.arange(1, samples + 1)
@@ -191,7 +191,7 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
     segments = Segments(
         sample_time=dt,
         samples=samples,
-        voltage=voltage,
+        inputs=inputs,
         first=first,
         start=np.asarray(dt / PARTS * (np.concatenate(starts) * PARTS - first)),
         measured=np.concatenate(measured),
@@ -207,15 +207,19 @@ def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: 
     return segments.guessed(model)
 
 
-def _inputs(runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple[Array, Index]:
-    """The inputs that `cut_at` needs, and the index of each segment's first: often a few seconds out of minutes."""
+def _inputs(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: int) -> tuple[Array, Index]:
+    """The inputs that `cut_at` needs (rows, inputs), and the index of each segment's first row.
+
+    They are often a few seconds out of minutes.
+    """
     inputs, first, count = [], [], 0
     for run, begin in zip(runs, starts, strict=True):
         edges = np.zeros(len(run) + 1, dtype=np.int64)
         np.add.at(edges, begin, 1)
         np.add.at(edges, begin + samples, -1)
         needed = np.cumsum(edges)[: len(run) - 1] > 0  # between a grid point and the next
-        inputs.append(run.input.reshape(-1, PARTS)[needed].ravel())
+        held = run.inputs(model.inputs)
+        inputs.append(held.reshape(-1, PARTS, held.shape[1])[needed].reshape(-1, held.shape[1]))
         first.append((count + np.concatenate([[0], np.cumsum(needed)])[begin]) * PARTS)
         count += int(needed.sum())
     return np.concatenate(inputs), np.concatenate(first)

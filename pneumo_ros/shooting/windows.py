@@ -61,11 +61,12 @@ def free_run(model: Model, run: Run) -> Prediction:
 def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
     if run.imposed and model.force_driven:
         return _force_along(model, run, starts, samples)
+    held = run.inputs(model.inputs)
     states = model.simulate_lanes(
-        run.input, start_states(model, run, starts), samples=samples, first=starts * PARTS,
+        held, start_states(model, run, starts), samples=samples, first=starts * PARTS,
         sample_time=run.sample_time, parts=PARTS,
     )  # fmt: skip
-    read = sense(model, states, None, run.input, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
+    read = sense(model, states, None, held, starts * PARTS, sample_time=run.sample_time, parts=PARTS)
     rows = starts[:, None] + np.arange(1, samples + 1)
     hidden = np.where(run.measured[rows], 0.0, np.nan)
     errors = {
@@ -79,7 +80,7 @@ def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: in
 def _force_along(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
     """The force that the imposed motion takes by the model: F + M (a - a_model), with the measured F and a."""
     states, mean = driven(model, measured_frame(run, force_driven=True), run)
-    mass = model["piston.mass"] + model.outputs(states, np.append(run.held, run.held[-1]))["added_mass"]
+    mass = model["piston.mass"] + model.outputs(states, run.sampled(model.inputs))["added_mass"]
     error = mass * (run.smoothed.acceleration - centred(mean)[:, 1])
     rows = starts[:, None] + np.arange(1, samples + 1)
     hidden = np.where(run.measured[rows], 0.0, np.nan)

@@ -44,9 +44,11 @@ def stretch(model: Model, run: Run, begin: float, end: float) -> Stretch:
 def respond(model: Model, part: Stretch) -> dict[str, Array]:
     """What the model's sensors would read over a stretch (samples,), by signal. NumericalError when it diverges."""
     run, begin = part.run, part.first * PARTS
-    held = run.input[begin : begin + part.samples * PARTS]
-    states = model.simulate(held, part.start, sample_time=run.sample_time, parts=PARTS)
-    read = sense(model, states[None], None, run.input, np.array([begin]), sample_time=run.sample_time, parts=PARTS)
+    held = run.inputs(model.inputs)
+    states = model.simulate(
+        held[begin : begin + part.samples * PARTS], part.start, sample_time=run.sample_time, parts=PARTS
+    )
+    read = sense(model, states[None], None, held, np.array([begin]), sample_time=run.sample_time, parts=PARTS)
     return {name: read[0, :, i] for i, name in enumerate(measured_columns(model)) if name in run.signals}
 
 

@@ -8,7 +8,7 @@ from pneumo_ros.diagnose.hypothesis import everything, missing, vectors
 from pneumo_ros.plant import load_model
 
 MODEL = load_model("axis")
-MISSING = missing(MODEL)
+MISSING = missing(MODEL, MODEL.inputs)
 
 
 def test_every_catalogue_effect_that_can_fade_in_is_a_candidate() -> None:

@@ -32,7 +32,7 @@ def test_they_are_the_residuals_of_the_equations(equation: str, width: int) -> N
 
 def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
     model, _, run = own("sweep")
-    found = missing(model)
+    found = missing(model, model.inputs)
     whole = everything(model, found)
     variants = [
         {}, {"pressure_sensor_offset.offset_a": 4e3}, {"viscous_friction.coefficient": 50.0},
@@ -54,7 +54,7 @@ FAST = {"valve_spool_dynamics.angular_frequency": 60.0, "position_sensor_delay.d
 @pytest.mark.parametrize("name", FAST)
 def test_ranking_errs_by_hundredths_of_an_effect(name: str) -> None:
     model, _, run = own("sweep")
-    whole = everything(model, missing(model))
+    whole = everything(model, missing(model, model.inputs))
     evidence, variants = Evidence(model, [run]), vectors(whole, [{}, {name: FAST[name]}])
     exact, ranked = (np.diff(evidence.residuals(whole, variants, ranking=r), axis=0) for r in (False, True))
     error = np.sqrt(np.mean((ranked - exact) ** 2) / np.mean(exact**2))

@@ -49,7 +49,9 @@ def test_the_input_is_put_off_and_nothing_else_changes() -> None:
     put_off = later(given, 0.32e-3)
     np.testing.assert_array_equal(put_off.input[3:], given.input[:-3])
     np.testing.assert_array_equal(put_off.input[:3], given.input[0])
-    assert all(getattr(put_off, f.name) is getattr(given, f.name) for f in fields(Run) if f.name != "input")
+    assert all(
+        getattr(put_off, f.name) is getattr(given, f.name) for f in fields(Run) if f.name not in ("input", "further")
+    )
     assert later(given, 0.0) is given
 
 

@@ -53,7 +53,7 @@ def test_nothing_to_simulate_gives_nothing(axis: Model, start: np.ndarray) -> No
     ("options", "sentence"),
     [
         ({"voltage": [1.0, np.nan]}, "finite numbers"),
-        ({"voltage": [[1.0], [2.0]]}, "one row"),
+        ({"voltage": [[1.0, 2.0]]}, "one row"),
         ({"state": [0.0, 0.0]}, "must hold 5 finite numbers: y, v, p_a, p_b, z"),
         ({"state": [0.0, np.inf, 1e5, 1e5, 0.0]}, "must hold 5 finite numbers"),
         ({"step": 0.0}, "must be positive"),
@@ -183,5 +183,5 @@ def test_outputs_take_one_voltage_for_all_and_refuse_too_few(axis: Model) -> Non
     x = axis.simulate(VOLTAGE, axis.state())
     one, all_of_them = axis.outputs(x, 2.0), axis.outputs(x, np.full(len(x), 2.0))
     assert all(np.array_equal(one[name], all_of_them[name]) for name in one)
-    with pytest.raises(UsageError, match="2 voltages do not cover"):
+    with pytest.raises(UsageError, match="2 rows of inputs do not cover"):
         axis.outputs(x, [1.0, 2.0])

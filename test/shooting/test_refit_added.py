@@ -137,7 +137,7 @@ def test_coarser_segments_start_and_are_driven_alike() -> None:
     model, _, run = own("sweep", seconds=3.0)
     fine = cut(model, [run, run], 0.5)
     coarse = fine.coarser()
-    assert (coarse.parts, coarse.step, len(coarse.voltage)) == (PARTS // 2, 2e-4, len(fine.voltage) // 2)
+    assert (coarse.parts, coarse.step, len(coarse.inputs)) == (PARTS // 2, 2e-4, len(fine.inputs) // 2)
     one, other = (s.simulate(model, s.guess) for s in (fine, coarse))
     np.testing.assert_allclose(other[:, :, 0], one[:, :, 0], atol=2e-5)
     np.testing.assert_allclose(other[:, :, 2:4], one[:, :, 2:4], atol=20.0)

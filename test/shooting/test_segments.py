@@ -19,7 +19,7 @@ def test_each_is_simulated_under_its_own_inputs_and_clock() -> None:
     )
     for machine in (model, warm):
         segments = cut_at(machine, runs, STARTS, SAMPLES)
-        assert len(segments.voltage) == (80 + 50 + 50 + 50) * PARTS
+        assert len(segments.inputs) == (80 + 50 + 50 + 50) * PARTS
         for number, one in ((segments, 1), (segments.coarser(), 2)):
             found = number.simulate(machine, number.guess)
             for k, (run, at) in enumerate(zip(segments.run, segments.at, strict=True)):
@@ -37,4 +37,4 @@ def test_some_segments_can_be_cut_alone() -> None:
     some, every = cut(model, runs, 0.2, rows), cut(model, runs, 0.2).pick(rows)
     np.testing.assert_array_equal(some.guess, every.guess)
     np.testing.assert_array_equal(some.residuals(model, some.guess), every.residuals(model, every.guess))
-    assert len(some.voltage) == len(rows) * 0.2 / PERIOD * PARTS
+    assert len(some.inputs) == len(rows) * 0.2 / PERIOD * PARTS

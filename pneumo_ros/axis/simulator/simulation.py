@@ -65,7 +65,7 @@ class Simulation:
     def _read(self) -> None:
         """Read the sensors into `reading`."""
         self._now[0] = self.plant.time
-        self._observe(self._row, self._values, self._held[-1:], self._now, self._seen)
+        self._observe(self._row, self._values, self._held[-1:].reshape(1, 1), self._now, self._seen)
         seen = self._seen[0].tolist()
         y, p_a, p_b = self._places
         self.reading = self.sensors.read(Reading(seen[y], float(self.plant.state[1]), seen[p_a], seen[p_b]))

@@ -31,7 +31,8 @@ CHUNK = 50_000  # samples between two reports of progress
 class Plan:
     """The simulation to run.
 
-    held: (samples * parts,) voltage [V], or force [N], `parts` of them one after another in each sample.
+    held: (samples * parts, inputs) voltage [V], or force [N], and what else the model reads; `parts` rows one after
+    another in each sample.
     state: where it starts; text: what it is, for a person; commands: the arrays that the recording is to hold.
     """
 
@@ -108,12 +109,16 @@ def _drive(options: argparse.Namespace, model: "Model") -> Plan:
     import numpy as np
 
     drive = parse_drive(options.input)
+    if further := ", ".join(model.inputs[1:]):
+        raise UsageError(
+            f"effects of '{model.name}' read measured signals ({further}); give --input a recording that has them"
+        )
     dt = 1.0 / (options.rate or RATE)
     samples = max(1, round((options.seconds or drive.duration or SECONDS) / dt))
     time = np.arange(1 + samples, dtype=float) * dt
     volts = drive.voltage(time)
     commands = {} if model.force_driven else {"voltage": volts}
-    return Plan(volts[:-1], 1, dt, model.state(y=options.position or 0.0), drive.text, commands)
+    return Plan(volts[:-1, None], 1, dt, model.state(y=options.position or 0.0), drive.text, commands)
 
 
 def _replay(options: argparse.Namespace, model: "Model", console: Console) -> Plan:
@@ -138,7 +143,7 @@ def _replay(options: argparse.Namespace, model: "Model", console: Console) -> Pl
         sent = recording.command_time <= samples * run.sample_time
         commands = {"command_time": recording.command_time[sent], "command": recording.command[sent]}
     text = f"the commands of {recording.name}"
-    return Plan(run.input[: samples * PARTS], PARTS, run.sample_time, state, text, commands)
+    return Plan(run.inputs(model.inputs)[: samples * PARTS], PARTS, run.sample_time, state, text, commands)
 
 
 def simulate(model: "Model", plan: Plan, console: Console) -> "Array":
@@ -156,15 +161,19 @@ def simulate(model: "Model", plan: Plan, console: Console) -> "Array":
 
 
 def recorded(model: "Model", plan: Plan, states: "Array") -> dict[str, Any]:
-    """The arrays that `write_recording` takes."""
+    """The arrays that `write_recording` takes; measured pressures that the model read are recorded again."""
     import numpy as np
+
+    from pneumo_ros.plant.signals import DRIVE
 
     time = np.arange(len(states)) * plan.sample_time
     column = {name: states[:, index] for index, name in enumerate(model.states)}
     signals = {"time": time, "position": column["y"], "velocity": column["v"]}
     if model.force_driven:
-        force = plan.held[:: plan.parts]
-        return {**signals, "effort": np.append(force, force[-1])}
+        held = np.concatenate([plan.held[:: plan.parts], plan.held[-1:]])
+        read = dict(zip(model.inputs, held.T, strict=True))
+        pressures = {f"pressure_{side}": read[f"p_{side}"] for side in "ab" if f"p_{side}" in read}
+        return {**signals, "effort": read[DRIVE], **pressures}
     return {**signals, "effort": model.effort(states), "pressure_a": column["p_a"], "pressure_b": column["p_b"]}
 
 

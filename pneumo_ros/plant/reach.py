@@ -1,0 +1,53 @@
+"""What effects reach: the measured signals that they read as inputs, and the machine on which they act."""
+
+import ast
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.signals import DRIVE, SIGNALS
+
+_IN_KERNEL = ("equations", "outputs", "advance")  # functions of an effect that a kernel calls
+
+
+def names_in(default: str) -> list[str]:
+    """The names in the default of a signal."""
+    return [node.id for node in ast.walk(ast.parse(default, mode="eval")) if isinstance(node, ast.Name)]
+
+
+def inputs_of(effects: Sequence[type[Effect]]) -> tuple[str, ...]:
+    """The held inputs of a machine in kernel order: its drive, then the measured signals that its effects read."""
+    states = {state for effect in effects for state in effect.states}
+    read = {name for effect in effects for reads, _ in _functions(effect) for name in reads}
+    todo = list(read)
+    while todo:  # each signal once
+        new = {name for name in _defaults(todo.pop()) if name not in read}
+        read |= new
+        todo += new
+    return DRIVE, *(name for name in SIGNALS if SIGNALS[name].kind == "measured" and name in read - states)
+
+
+def acting(effects: Sequence[type[Effect]], roots: Collection[str]) -> set[str]:
+    """Names of the effects on which the named states and signals depend."""
+    functions = [(effect.name, reads, writes) for effect in effects for reads, writes in _functions(effect)]
+    found, seen, todo = set[str](), set[str](), list(roots)
+    while todo:  # each name once
+        name = todo.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        for owner, reads, writes in functions:
+            if name in writes or f"der_{name}" in writes or f"rate_{name}" in writes:
+                found.add(owner)
+                todo += reads
+        todo += _defaults(name)
+    return found
+
+
+def _functions(effect: type[Effect]) -> Iterator[tuple[Iterable[str], Iterable[str]]]:
+    """Reads and writes of each function of an effect that a kernel calls."""
+    own = (effect.functions[key] for key in _IN_KERNEL if key in effect.functions)
+    return ((function.reads, function.writes) for function in own)
+
+
+def _defaults(name: str) -> list[str]:
+    return names_in(SIGNALS[name].default) if name in SIGNALS else []

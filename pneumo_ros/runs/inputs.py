@@ -1,0 +1,28 @@
+"""Which measured inputs recordings hold, and whether a model may read them."""
+
+from collections.abc import Sequence
+
+from pneumo_ros.errors import DataError
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.signals import DRIVE
+from pneumo_ros.runs.run import SENSORS, Run
+
+
+def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
+    """Names of the inputs that every run holds, U first."""
+    return DRIVE, *(name for name in SENSORS if all(name in run.further for run in runs))
+
+
+def check_inputs(model: Model, run: Run) -> None:
+    """Raises DataError, with the sensors that would be needed, when `model` reads an input that `run` lacks."""
+    absent = [name for name in model.inputs if name != DRIVE and name not in run.further]
+    if not absent:
+        return
+    readers = [
+        e.name for e in model.composition.effects if any(n in f.reads for f in e.functions.values() for n in absent)
+    ]
+    topics = " and ".join(SENSORS.get(name, name) for name in absent)
+    raise DataError(
+        f"{run.name} has no {topics}, which effect {' and '.join(readers)} of '{model.name}' reads as "
+        f"{' and '.join(absent)}; record also {topics}, or leave {' and '.join(readers)} out"
+    )

@@ -1,0 +1,106 @@
+"""Measured inputs of a force-driven run: laid on the grid, kept through cuts and shifts, asked for by models."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from identify.making import recording
+
+from pneumo_ros.diagnose.mechanics import driven_by_pressures, mechanical
+from pneumo_ros.diagnose.stretches import stretch
+from pneumo_ros.diagnose.timing import later
+from pneumo_ros.errors import DataError
+from pneumo_ros.plant import load_model
+from pneumo_ros.reading.read import checked_run
+from pneumo_ros.records import Recording
+from pneumo_ros.runs.inputs import check_inputs, measured_inputs
+from pneumo_ros.runs.run import PARTS, Run, make_run
+
+N = 3000
+TIME = np.arange(N) * 1e-3
+EMPS = load_model("emps")
+SEALED = EMPS.with_effects([*EMPS.effects, "pressure_dependent_friction"])
+NAMES = ("U", "p_a", "p_b")
+
+
+def force_driven(**changes: object) -> Recording:
+    """A piston pushed to and fro, with both pressures."""
+    signals: dict[str, object] = {
+        "time": TIME, "position": 0.1 * np.sin(2.0 * TIME), "effort": 90.0 * np.cos(2.0 * TIME),
+        "pressure_a": 4e5 + 1e5 * np.sin(3.0 * TIME), "pressure_b": 3e5 - 1e5 * np.cos(3.0 * TIME),
+    }  # fmt: skip
+    return recording(**(signals | changes))
+
+
+def test_inputs_stand_side_by_side_in_the_order_asked_for() -> None:
+    run = make_run(force_driven())
+    held = run.inputs(NAMES)
+    middle = (np.arange((N - 1) * PARTS) + 0.5) / PARTS * 1e-3
+    assert held.shape == ((N - 1) * PARTS, 3)
+    assert held.flags.c_contiguous
+    assert np.array_equal(held[:, 0], run.input)
+    assert held[:, 1] == pytest.approx(4e5 + 1e5 * np.sin(3.0 * middle), abs=1.0)
+    assert held[:, 2] == pytest.approx(3e5 - 1e5 * np.cos(3.0 * middle), abs=1.0)
+    assert np.array_equal(run.inputs(("U", "p_b", "p_a")), held[:, [0, 2, 1]])
+    assert np.array_equal(run.inputs(("U",)), run.input[:, None])
+
+
+def test_from_each_sample_on_their_mean_until_the_next() -> None:
+    run = make_run(force_driven())
+    sampled = run.sampled(NAMES)
+    assert sampled.shape == (N, 3)
+    assert sampled[:-1, 0] == pytest.approx(run.held, rel=1e-12)
+    assert sampled[7, 1] == pytest.approx(run.inputs(NAMES)[70:80, 1].mean(), rel=1e-12)
+    assert np.array_equal(sampled[-1], sampled[-2])
+
+
+def test_they_are_cut_and_put_off_with_the_force() -> None:
+    run = make_run(force_driven())
+    part = stretch(run, 1.0, 2.0)
+    assert np.array_equal(part.inputs(NAMES), run.inputs(NAMES)[1000 * PARTS : 2000 * PARTS])
+    put_off = later(run, 0.5e-3)
+    assert np.array_equal(put_off.inputs(NAMES)[5:], run.inputs(NAMES)[:-5])
+    assert np.array_equal(replace(run, name="other").inputs(NAMES), run.inputs(NAMES))
+
+
+def test_a_recording_without_a_pressure_says_which_sensor_the_model_needs() -> None:
+    run = make_run(force_driven(pressure_b=None))
+    assert measured_inputs([run]) == ("U", "p_a")
+    assert measured_inputs([run, make_run(force_driven())]) == ("U", "p_a")
+    check_inputs(EMPS, run)
+    with pytest.raises(DataError, match="has no chamber_b/pressure, which the model reads as p_b; record it"):
+        run.inputs(NAMES)
+    wanted = "has no chamber_b/pressure, which effect pressure_dependent_friction of 'emps' reads as p_b; record also"
+    with pytest.raises(DataError, match=wanted):
+        check_inputs(SEALED, run)
+    with pytest.raises(DataError, match=wanted):
+        checked_run(force_driven(pressure_b=None), SEALED)
+
+
+def test_gauge_pressures_are_not_used_or_refused() -> None:
+    low = force_driven(pressure_a=3.0 + np.sin(TIME), pressure_b=2.0 + np.cos(TIME))
+    run, notes = checked_run(low, EMPS)
+    assert run.further == {}
+    assert "its pressures are not used, and no effect of them is tried" in notes[0]
+    assert "--read-as bar" in notes[0]
+    with pytest.raises(DataError, match="--read-as bar"):
+        checked_run(low, SEALED)
+
+
+def test_pressures_may_be_constant_where_a_force_moves_the_piston() -> None:
+    run, notes = checked_run(force_driven(pressure_a=np.full(N, 5e5), pressure_b=np.full(N, 1e5)), SEALED)
+    assert not notes
+    assert (run.inputs(NAMES)[:, 1:] == [5e5, 1e5]).all()
+
+
+def test_the_mechanics_of_a_machine_with_chambers_read_its_pressures() -> None:
+    axis = load_model("axis")
+    model = mechanical(axis.with_effects([*axis.effects, "pressure_dependent_friction"]))
+    assert model is not None
+    assert model.inputs == NAMES
+    p_a, p_b = 4e5 + 1e5 * np.sin(3.0 * TIME), 3e5 - 1e5 * np.cos(3.0 * TIME)
+    held = np.zeros((N - 1) * PARTS)
+    run = Run("axis", 1e-3, 0.1 * np.sin(TIME), p_a, p_b, held, np.ones(N, dtype=bool), False)
+    inputs = driven_by_pressures(axis, run).inputs(model.inputs)
+    assert inputs[:, 0] == pytest.approx(4.1e-4 * inputs[:, 1] - 3e-4 * inputs[:, 2], rel=1e-9)
+    assert inputs[::PARTS, 1] == pytest.approx(p_a[:-1], abs=200.0)
