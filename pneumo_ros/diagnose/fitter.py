@@ -23,6 +23,7 @@ from pneumo_ros.diagnose.hypothesis import (
 from pneumo_ros.diagnose.score import Scoring
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.library import FRAME
 from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import default_free
@@ -59,16 +60,20 @@ class Fitter:
         return Evidence(self.start, self._held_runs)
 
     def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
-        """Priors of the free parameters of `model` except `fixed`: narrow for the start's, wide for added effects'."""
+        """Priors of the free parameters of `model` except `fixed`: narrow for the start's, wide for added effects'.
+
+        For the start's, as wide as its machine file states, if it does.
+        """
         names, centre, prior, step = [], [], [], []
         for name in default_free(model):
             section, _, _key = name.partition(".")
             if name in UNSEEN or name in fixed:
                 continue
-            if section in self.start.effects:
+            if section in (*FRAME, *self.start.effects):
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))
                 size = size or self.start.usual_size(name)
-                middle, width, usual = self.start[name], BASE_PRIOR * size, USUAL * size
+                width = self.start.uncertainty.get(name, BASE_PRIOR * size)
+                middle, usual = self.start[name], USUAL * size
             else:
                 c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
                 middle, usual = _usual(c, model[name])

@@ -42,7 +42,10 @@ def mechanical(model: Model) -> Model | None:
         if moves(model, name):
             kept.append(name)
     values = {k: v for k, v in model.parameters.items() if k.partition(".")[0] in (*kept, "piston", "air")}
-    return Model.build(kept, values, library=model.library, frame=("piston", "air"), name=model.name)
+    stated = {k: v for k, v in model.uncertainty.items() if k in values}
+    return Model.build(
+        kept, values, library=model.library, frame=("piston", "air"), name=model.name, uncertainty=stated
+    )
 
 
 def moves(model: Model, name: str) -> bool:

@@ -1,6 +1,6 @@
 """Machine files: one YAML file is the model of the commands and the ROS parameter file of the nodes."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from pneumo_ros.files import write_whole, yaml_number
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.model import Model
+from pneumo_ros.plant.uncertainty import SECTION, flat, nested
 from pneumo_ros.yaml_text import load_yaml
 
 
@@ -72,7 +73,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
     if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
         raise UsageError(f"'effects' is {brief(listed)}; it takes a list of names, such as [dead_zone, arctan_flow]")
     listed = [name for name in listed if name]
-    sections = {key: value for key, value in given.items() if key != "effects"}
+    sections = {key: value for key, value in given.items() if key not in ("effects", SECTION)}
     frame = (
         FRAME
         if "chambers" in sections
@@ -86,7 +87,8 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library) -> Mo
         if not isinstance(values, dict):
             raise UsageError(f"section {section} is {brief(values)}; it takes its parameters, name: value")
     values = {f"{section}.{key}": _number(v) for section, inner in sections.items() for key, v in inner.items()}
-    return Model.build(listed, values, name=name, library=library, frame=frame)
+    uncertainty = flat(given[SECTION]) if SECTION in given else {}
+    return Model.build(listed, values, name=name, library=library, frame=frame, uncertainty=uncertainty)
 
 
 def _number(value: object) -> object:
@@ -99,8 +101,8 @@ def _number(value: object) -> object:
     return value
 
 
-def machine_text(model: Model) -> str:
-    """The machine file of a model, with unit and meaning beside every value."""
+def machine_text(model: Model, notes: Mapping[str, str] | None = None) -> str:
+    """The machine file of a model, with unit and meaning beside every value, and `notes` by dotted name."""
     effects = ", ".join(model.effects) or '""'  # ROS cannot know the type of an empty list
     lines = ["/**:", "  ros__parameters:", f"    effects: [{effects}]"]
     section = ""
@@ -109,10 +111,28 @@ def machine_text(model: Model) -> str:
         if owner != section:
             lines.append(f"    {owner}:")
             section = owner
-        specification = model.specification(dotted)
-        unit = "" if specification.unit == "1" else f"[{specification.unit}] "
-        lines.append(f"      {key}: {yaml_number(value)}  # {unit}{specification.meaning}")
-    return "\n".join(lines) + "\n"
+        note = f"; {notes[dotted]}" if notes and dotted in notes else ""
+        lines.append(f"      {key}: {yaml_number(value)}  # {_unit(model, dotted)}{_meaning(model, dotted)}{note}")
+    return "\n".join([*lines, *_uncertain(model)]) + "\n"
+
+
+def _uncertain(model: Model) -> Iterator[str]:
+    """Lines of the section that states the uncertainty of values, if there is any."""
+    if model.uncertainty:
+        yield f"    {SECTION}:  # standard deviations of what is not known exactly: priors of fits"
+    for section, inner in nested(model.uncertainty).items():
+        yield f"      {section}:"
+        for key, value in inner.items():
+            yield f"        {key}: {yaml_number(value)}  # {_unit(model, f'{section}.{key}')}".rstrip("# ")
+
+
+def _unit(model: Model, dotted: str) -> str:
+    unit = model.specification(dotted).unit
+    return "" if unit == "1" else f"[{unit}] "
+
+
+def _meaning(model: Model, dotted: str) -> str:
+    return model.specification(dotted).meaning
 
 
 def save_model(model: Model, path: str | Path, *, overwrite: bool = True) -> Path:

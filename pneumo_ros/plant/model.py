@@ -17,6 +17,7 @@ from pneumo_ros.plant.kernels import load_kernel
 from pneumo_ros.plant.lacking import lacking, missing_parameters, without_chambers
 from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.uncertainty import SECTION, deviations, nested
 from pneumo_ros.plant.usual import usual_size
 
 Array = NDArray[np.float64]
@@ -29,10 +30,19 @@ class Model:
     Build one with `load_model`, or from another by `with_parameters` and `with_effects`.
     """
 
-    def __init__(self, composition: Composition, values: Mapping[str, float], name: str, library: Library) -> None:
+    def __init__(
+        self,
+        composition: Composition,
+        values: Mapping[str, float],
+        name: str,
+        library: Library,
+        uncertainty: Mapping[str, float] | None = None,
+    ) -> None:
         """Use `Model.build`, which validates."""
         self.composition, self.name, self.library = composition, name, library
         self.parameters: Mapping[str, float] = MappingProxyType({key: values[key] for key in composition.parameters})
+        self.uncertainty: Mapping[str, float] = MappingProxyType(dict(uncertainty or {}))
+        """Stated standard deviations of parameters, in their units; most machine files state none."""
 
     @classmethod
     def build(
@@ -44,8 +54,9 @@ class Model:
         library: Library | None = None,
         frame: Iterable[str] = FRAME,
         defaults: bool = False,
+        uncertainty: Mapping[str, object] | None = None,
     ) -> "Model":
-        """A model of `effects` with `values` by dotted name.
+        """A model of `effects` with `values` by dotted name, and `uncertainty`: deviations of some of them.
 
         A missing value is an error unless `defaults` or unless its default adds nothing.
 
@@ -65,7 +76,8 @@ class Model:
             if sentence := lacking(parts, library):
                 raise UsageError(sentence) from problem
             raise
-        return cls(composition, _checked(composition, values, defaults), name, library)
+        checked = _checked(composition, values, defaults)
+        return cls(composition, checked, name, library, deviations(composition, checked, uncertainty or {}))
 
     # --- what it is -------------------------------------------------------------------------------------------------
 
@@ -115,28 +127,30 @@ class Model:
         return tuple(sentence for sentence in found if sentence)
 
     def as_dict(self) -> dict[str, object]:
-        """The machine file as a nested dictionary: effects, then section -> parameter -> value."""
+        """The machine file as a nested dictionary: effects, section -> parameter -> value, and stated uncertainty."""
         result: dict[str, object] = {"effects": list(self.effects)}
         for dotted, value in self.parameters.items():
             section, _, key = dotted.partition(".")
             inner = result.setdefault(section, {})
             assert isinstance(inner, dict)
             inner[key] = value
-        return result
+        return result | ({SECTION: nested(self.uncertainty)} if self.uncertainty else {})
 
     # --- variants ---------------------------------------------------------------------------------------------------
 
     def with_parameters(self, values: Mapping[str, object], name: str | None = None) -> "Model":
         """The same effects with other values; UsageError, with the nearest names, for unknown or bad ones."""
         checked = _checked(self.composition, {**self.parameters, **values}, defaults=False)
-        return Model(self.composition, checked, name or self.name, self.library)
+        return Model(self.composition, checked, name or self.name, self.library, self.uncertainty)
 
     def with_effects(self, effects: Iterable[str], values: Mapping[str, object] | None = None) -> "Model":
         """Another list of effects; shared parameters keep their values, new ones take `values` or their defaults."""
         frame = tuple(e.name for e in self.composition.effects if e.name in FRAME)
         model = Model.build(effects, {}, name=self.name, library=self.library, frame=frame, defaults=True)
         kept = {key: value for key, value in self.parameters.items() if key in model.parameters}
-        return model.with_parameters({**kept, **(values or {})})
+        stated = {key: value for key, value in self.uncertainty.items() if key in model.parameters}
+        larger = model.with_parameters({**kept, **(values or {})})
+        return Model(larger.composition, larger.parameters, larger.name, larger.library, stated)
 
     # --- simulation -------------------------------------------------------------------------------------------------
 

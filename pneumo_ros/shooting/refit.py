@@ -32,9 +32,14 @@ FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_frictio
 
 
 def default_free(model: Model) -> tuple[str, ...]:
-    """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows."""
+    """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows.
+
+    What the machine file states to be uncertain is free, too.
+    """
     return tuple(
-        name for name in model.parameters if name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED
+        name
+        for name in model.parameters
+        if name in model.uncertainty or (name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED)
     )
 
 
@@ -96,11 +101,13 @@ def refit_segments(
 
 
 def default_prior(model: Model, name: str) -> float:
-    """Prior standard deviation of a parameter: 5 % of its value, in the parameter's unit.
+    """Prior standard deviation of a parameter: what the machine file states, else 5 % of its value, in its unit.
 
     5 % of its default if that is larger, of its usual size if both are 0. For an effect that is switched off, its whole
     usual size.
     """
+    if name in model.uncertainty:
+        return model.uncertainty[name]
     specification, value = model.specification(name), model[name]
     size = max(abs(value), abs(specification.default))
     if value == specification.neutral and (specification.default != value or size == 0.0):

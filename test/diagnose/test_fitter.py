@@ -63,3 +63,18 @@ def test_parameters_of_the_model_that_are_zero_have_a_prior() -> None:
     )
     assert (known.prior > 0.0).all()
     assert (known.step > 0.0).all()
+
+
+def test_priors_are_as_wide_as_the_machine_file_states() -> None:
+    """What is stated of the frame, which is fixed otherwise, is free, too."""
+    model, _, run = own("steps")
+    volume = "chambers.volume_a"
+    stated = Model.build(
+        model.effects, model.parameters, library=model.library, uncertainty={STATIC: 30.0, volume: 5e-5}
+    )
+    plain, wide = (Fitter(one, [run], [run], []).known(one) for one in (model, stated))
+    assert set(wide.names) - set(plain.names) == {volume}
+    widths = dict(zip(wide.names, wide.prior.tolist(), strict=True))
+    assert (widths[STATIC], widths[volume]) == (30.0, 5e-5)
+    others = [name for name in plain.names if name != STATIC]
+    assert [widths[n] for n in others] == [p for n, p in zip(plain.names, plain.prior, strict=True) if n != STATIC]

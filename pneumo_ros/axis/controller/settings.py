@@ -13,6 +13,7 @@ from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.uncertainty import SECTION
 from pneumo_ros.records.contract import JOINT
 
 SHAPES = ("topic", "constant", "steps", "sine")
@@ -123,7 +124,7 @@ def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
     effects = given.get(EFFECTS)
     if effects is None:
         return set()
-    sections = {*FRAME, *effects}
+    sections = {*FRAME, *effects, SECTION}
     return {name for name in given if name.partition(".")[0] in sections}
 
 
