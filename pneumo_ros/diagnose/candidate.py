@@ -28,6 +28,7 @@ class Candidate:
     first: bool  # whether nothing was added before
     score: Score  # nats that it gains over the model without it
     known: float = 0.0  # nats of them by which it agrees better with what was known of the model's parameters
+    pays: float = 0.0  # share of the error of predictions of held-out runs that it removes, where that was asked
     lag: float = np.inf  # samples, of an effect that delays
     refused: str = ""  # why it may not be added whatever its score
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
@@ -38,16 +39,21 @@ class Candidate:
         return self.hypothesis.name
 
     @property
+    def least(self) -> float:
+        """Share of the misfit beyond noise, or of the error of predictions, that it must remove."""
+        return SHARE_LEAST[0 if self.first else 1]
+
+    @property
     def objections(self) -> tuple[str, ...]:
         """Why it may not be added; empty when it may."""
-        found, least = list[str](), SHARE_LEAST[0 if self.first else 1]
+        found = list[str]()
         if self.score.nats < MARGIN:
             found.append(f"all recordings together gain {self.score.nats:.0f} nats with it, and {MARGIN:g} are asked")
         elif self.score.held <= (0.0 if self.known < MARGIN else -MARGIN):
             found.append(f"held-out recordings lose {-self.score.held:.1f} nats with it")
-        if self.size < MATERIAL:
+        if self.size < MATERIAL and self.pays < self.least:
             found.append(f"its size is only {self.size:.2g} times the usual one")
-        if self.share < least:
+        if max(self.share, self.pays) < self.least:
             found.append(f"removes only {100.0 * self.share:.0f} % of the misfit beyond noise")
         if self.lag < 1.0:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")

@@ -16,6 +16,7 @@ from pneumo_ros.runs.run import Run
 Array = NDArray[np.float64]
 
 WINDOWS = {"momentum": (0.1, 0.04), "chamber_a": (0.2, 0.04), "chamber_b": (0.2, 0.04)}  # s
+SLOW = 4e-3  # s between samples: windows of slower recordings are as many samples long
 
 
 @dataclass(frozen=True)
@@ -49,14 +50,15 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
     """All families of one run, with noise by the claims of `model`; `index` is the run's."""
     run, (states, claimed) = frame.run, follow(model, frame)
     found, momentum = [], Momentum(model, run, states)
-    for width in () if model.imposed else WINDOWS["momentum"]:
+    longer = max(run.sample_time / SLOW, 1.0)
+    for width in () if model.imposed else (longer * w for w in WINDOWS["momentum"]):
         bump = Bump.of(width, run.sample_time)
         family = _family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump))
         found.append(replace(family, by_mass=momentum.noise_by_position(bump)))
     for chamber in "" if model.force_driven else "ab":
         equation = Chamber(model, chamber)
         rate, steep = claimed[:, equation.column], equation.steepness(run, states)
-        for width in WINDOWS[f"chamber_{chamber}"]:
+        for width in (longer * w for w in WINDOWS[f"chamber_{chamber}"]):
             bump = Bump.of(width, run.sample_time)
             noise = equation.noise(bump, run, states, rate, steep)
             found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))

@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: deviation of a uniform prior within 5 %, and its usual change
 PROBE_SHARE = 0.005  # of a usual change of a base parameter, or of a usual size of an effect
 AS_MUCH = 3.0  # log likelihood: the most that a simpler effect may lose
-SCREENED = 50.0  # s of recordings by which candidates are ranked first
+SCREENED, SAMPLES = 50.0, 50_000  # s of recordings by which candidates are ranked first, and samples, if that is longer
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
 
@@ -149,7 +149,7 @@ class Fitter:
     @cached_property
     def part(self) -> Evidence:
         """The evidence for the first ranking of candidates: a share of every run, or all runs where they are short."""
-        some = stretches(self.train.runs, SCREENED)
+        some = stretches(self.train.runs, max(SCREENED, SAMPLES * self.train.runs[0].sample_time))
         return Evidence(self.start, some) if some else self.train
 
     def added(self, model: Model) -> list[str]:

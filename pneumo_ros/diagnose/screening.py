@@ -36,12 +36,14 @@ SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
 
-    Where base parameters are strained, also by the slope at neutral, by which they replace an effect.
+    Where base parameters are strained, also by the slope at neutral, by which they replace an effect; and so a rate
+    [1/s], whose effect saturates: in a large chamber all that happens is slow.
     """
     found = missing(base.model, base.everything.inputs)
     tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
     if strain(base.offset) > STRAINED:
         tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
+    tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _saturates(effect)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
     for _name, effect, u in tasks:
@@ -63,6 +65,10 @@ def screen(base: BaseFit) -> list[Hypothesis]:
 
 def _one_size(effect: tuple[Coordinate, ...]) -> bool:
     return sum(c.is_size for c in effect) == 1 and not any(c.is_size and c.logarithmic for c in effect)
+
+
+def _saturates(effect: tuple[Coordinate, ...]) -> bool:
+    return any(c.is_size and c.unit == "1/s" for c in effect)
 
 
 def _linear(
