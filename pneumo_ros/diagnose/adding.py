@@ -19,6 +19,7 @@ from pneumo_ros.diagnose.refining import refine
 from pneumo_ros.diagnose.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.inputs import check_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import Estimate, default_free
@@ -71,6 +72,8 @@ def add(
         check_inputs(larger, run)
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting the model as given")
+    runs = on_one_clock([*train, *held])
+    train, held = runs[: len(train)], runs[len(train) :]
     late = lateness(model, train) if EFFECT not in effects else 0.0
     train, held = ([later(run, late) for run in runs] for runs in (train, held))
     fading = [name for name in effects if coordinates(model.library.find(name))]

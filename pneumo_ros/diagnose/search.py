@@ -29,6 +29,7 @@ from pneumo_ros.diagnose.unseen import unseen
 from pneumo_ros.diagnose.verdict import rises
 from pneumo_ros.errors import OutOfTimeError
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
@@ -61,6 +62,8 @@ class Search:
         self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
     ) -> None:
         self.progress = progress or (lambda share, text: None)
+        runs = on_one_clock([*train, *held])
+        train, held = runs[: len(train)], runs[len(train) :]
         self.late = lateness(model, train)  # s
         train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)

@@ -13,6 +13,7 @@ import numpy as np
 
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.approach import approach
 from pneumo_ros.shooting.estimates import Estimate, Refit, estimates
@@ -64,7 +65,7 @@ def refit(
     DataError when no run holds a segment, NumericalError when no prediction is finite.
     """
     names = default_free(model) if free is None else tuple(free)
-    segments = cut(model, runs, segment)
+    segments = cut(model, on_one_clock(runs), segment)
     return refit_segments(
         model, segments, names, priors or {}, share=share, start=start, threads=threads, progress=progress
     )

@@ -12,9 +12,9 @@ class LugreFriction(Effect):
     """
 
     static_friction = Parameter(100.0, "N", "static friction force F_s", low=0.0, high=1e5)
-    coulomb_friction = Parameter(70.0, "N", "Coulomb friction force F_c", low=1e-3, high=1e5)
+    coulomb_friction = Parameter(70.0, "N", "Coulomb friction force F_c", low=1e-4, high=1e5)
     stribeck_velocity = Parameter(0.01, "m/s", "Stribeck velocity v_s", low=1e-5, high=1.0)
-    bristle_stiffness = Parameter(1.4e6, "N/m", "bristle stiffness sigma_0", low=1e3, high=5e7)
+    bristle_stiffness = Parameter(1.4e6, "N/m", "bristle stiffness sigma_0", low=1.0, high=5e7)
     bristle_damping = Parameter(50.0, "N s/m", "bristle damping sigma_1", low=0.0, high=1e5)
     breakaway_ratio = Parameter(
         0.9, "1", "breakaway deflection over largest deflection, z_ba / z_max", low=0.01, high=0.999

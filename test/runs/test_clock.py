@@ -1,0 +1,35 @@
+"""Clocks a little apart are laid on one sample time; the motion stays where it was."""
+
+import numpy as np
+
+from pneumo_ros.runs.clock import on_one_clock
+from pneumo_ros.runs.run import PARTS, Run
+
+
+def sine(step: float, seconds: float = 2.0) -> Run:
+    """A sine of 1 Hz, its rate as the input, a gap from 0.5 to 0.6 s, and a pressure that is twice the position."""
+    t = step * np.arange(round(seconds / step) + 1)
+    parts = (np.arange((len(t) - 1) * PARTS) + 0.5) * step / PARTS
+    y, held = np.sin(2.0 * np.pi * t), np.cos(2.0 * np.pi * parts)
+    return Run(f"{step}", step, y, 2.0 * y, None, held, (t < 0.5) | (t > 0.6), True, {"p_a": 2.0 * held})
+
+
+def test_runs_a_little_apart_come_to_their_median_sample_time() -> None:
+    found = on_one_clock([sine(5.0e-3), sine(5.1e-3), sine(4.5e-3)])
+    assert {run.sample_time for run in found} == {5.0e-3}
+    for run in found:
+        exact = sine(5.0e-3)
+        n = min(len(run), len(exact))
+        assert n > 395
+        assert len(run.input) == (len(run) - 1) * PARTS
+        assert np.abs(run.position - exact.position[:n])[:n].max() < 2e-4
+        assert np.abs(run.pressure_a - 2.0 * run.position).max() < 1e-12
+        assert np.abs(run.input - exact.input[: len(run.input)]).max() < 5e-3
+        assert run.further["p_a"].tobytes() == (2.0 * run.input).tobytes()
+        assert abs(float(run.time[~run.measured][0]) - 0.5) < 6e-3
+
+
+def test_runs_of_equal_or_of_other_rates_stay_as_they_are() -> None:
+    given = [sine(5e-3), sine(5e-3), sine(1e-3)]
+    assert all(one is other for one, other in zip(on_one_clock(given), given, strict=True))
+    assert on_one_clock([]) == []
