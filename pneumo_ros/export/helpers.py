@@ -1,24 +1,24 @@
 """Small C functions that stand for Python's and the compiled kernel's own."""
 
 HELPERS = {
-    "min": """static double kernel_min(double a, double b)
+    "min": """MACHINE_FUNCTION double kernel_min(double a, double b)
 {
     return (b < a) ? b : a;
 }""",
-    "max": """static double kernel_max(double a, double b)
+    "max": """MACHINE_FUNCTION double kernel_max(double a, double b)
 {
     return (b > a) ? b : a;
 }""",
-    "modulo": """static double kernel_modulo(double a, double b)
+    "modulo": """MACHINE_FUNCTION double kernel_modulo(double a, double b)
 {
     const double rest = fmod(a, b); /* Python: the sign of the divisor */
     return ((rest != 0.0) && ((rest < 0.0) != (b < 0.0))) ? (rest + b) : rest;
 }""",
-    "quotient": """static double kernel_quotient(double a, double b)
+    "quotient": """MACHINE_FUNCTION double kernel_quotient(double a, double b)
 {
     return rint((a - kernel_modulo(a, b)) / b);
 }""",
-    "power": """static double kernel_power(double x, int n)
+    "power": """MACHINE_FUNCTION double kernel_power(double x, int n)
 {
     double result = 1.0;
     unsigned int left = (n < 0) ? (0u - (unsigned int)n) : (unsigned int)n;
@@ -31,20 +31,20 @@ HELPERS = {
     }
     return (n < 0) ? (1.0 / result) : result;
 }""",
-    "power_of_two": """static double kernel_power_of_two(double k)
+    "power_of_two": """MACHINE_FUNCTION double kernel_power_of_two(double k)
 {
     const uint64_t bits = (uint64_t)((int64_t)k + 1023) << 52;
     double result;
     memcpy(&result, &bits, sizeof result);
     return result;
 }""",
-    "exponent": """static double kernel_exponent(double x)
+    "exponent": """MACHINE_FUNCTION double kernel_exponent(double x)
 {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return (double)(int32_t)(bits >> 52) - 1023.0;
 }""",
-    "mantissa": """static double kernel_mantissa(double x)
+    "mantissa": """MACHINE_FUNCTION double kernel_mantissa(double x)
 {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);

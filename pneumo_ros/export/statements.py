@@ -21,7 +21,9 @@ def head(signature: Signature, struct: str) -> str:
     if signature.takes_parameters:
         arguments.append(f"const {struct} *restrict p")
     arguments += [f"double *out_{i}_" for i in range(signature.width)]
-    return f"static {'void' if signature.width else 'double'} {signature.name}({', '.join(arguments) or 'void'})"
+    return (
+        f"MACHINE_FUNCTION {'void' if signature.width else 'double'} {signature.name}({', '.join(arguments) or 'void'})"
+    )
 
 
 class _Function:

@@ -9,7 +9,7 @@ from pneumo_ros.export.refusal import refusal
 from pneumo_ros.export.signature import InexpressibleError, Signature
 from pneumo_ros.export.statements import function_text
 
-ROOTS = ("step", "derivatives", "observation")  # what the public functions call
+ROOTS = ("step", "derivatives", "observation", "after_step")  # what the public functions call
 
 
 def functions_text(machine: Exported) -> tuple[str, dict[str, Signature]]:
