@@ -71,7 +71,11 @@ def by_c(model: Model, folder: Path) -> Run:
     advance.restype = None
 
     def run(voltage: np.ndarray, hold: float) -> np.ndarray:
-        x, u, count = np.concatenate([[0.0], model.state()]), np.zeros(1), ctypes.c_ulong(round(hold / STEP))
+        x, u, count = (
+            np.concatenate([[0.0], model.state()]),
+            np.zeros(len(machine.inputs)),
+            ctypes.c_ulong(round(hold / STEP)),
+        )
         given, h = (address(x), address(u), address(q)), ctypes.c_double(STEP)
         for level in voltage:
             u[0] = level

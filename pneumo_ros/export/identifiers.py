@@ -12,6 +12,7 @@ _MACROS = """NAN INFINITY HUGE_VAL NULL NDEBUG errno linux unix i386 isnan isinf
 isgreater isless isunordered math_errhandling MATH_ERRNO MATH_ERREXCEPT"""
 _LIBRARY = """acosh asin acos asinh atan2 atanh cbrt ceil copysign cosh erf erfc expm1 fabs floor fmod hypot lgamma
 log10 log1p log2 pow rint sinh sqrt tan tgamma trunc memcpy"""
+_FILES = {"all", "fmi2", "fmi3", "kernel", "machine", "unit", "variables"}  # names of an FMU's own files and functions
 _OURS = "p dt rates"  # what the written functions call their own
 _TAKEN = {*_C.split(), *_CPP.split(), *_MACROS.split(), *_LIBRARY.split(), *_OURS.split()}
 
@@ -27,6 +28,8 @@ def identifier(name: str) -> str:
 def prefix_of(name: str) -> str:
     """The prefix of all names of an exported machine, from the name of its machine file."""
     plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "machine"
+    if plain.lower() in _FILES:
+        return f"{plain}_model"
     return plain if plain[0].isalpha() else f"machine_{plain}"
 
 

@@ -1,7 +1,9 @@
 """The variables of a functional mock-up unit: which there are, under which names and references, and where they lie."""
 
+from collections import Counter
 from dataclasses import dataclass
 
+from pneumo_ros.errors import UsageError
 from pneumo_ros.export.machine import Exported, Variable
 from pneumo_ros.export.nominal import nominal
 
@@ -42,7 +44,7 @@ class UnitVariable:
 
 
 def unit_variables(machine: Exported) -> list[UnitVariable]:
-    """All of them, in the order of their references."""
+    """All of them, in the order of their references; UsageError for a state with a name that an FMU needs itself."""
     rows = [UnitVariable(0, "TIME", "x.t", Variable("time", "s", "time"), "independent")]
 
     def add(
@@ -68,7 +70,14 @@ def unit_variables(machine: Exported) -> list[UnitVariable]:
     add("STEP_PARAMETER", "step", step, "parameter", "fixed", "exact")
     for i, v in enumerate(INDICATORS):
         add("FIRST_INDICATOR", f"indicators[{i}]", v, "local", "continuous", "calculated")
+    _check_names(rows)
     return rows
+
+
+def _check_names(rows: list[UnitVariable]) -> None:
+    twice = [name for name, count in Counter(row.name for row in rows).items() if count > 1]
+    if twice:
+        raise UsageError(f"an FMU has a variable {twice[0]} of its own; give that state of your effect another name")
 
 
 def _slope(state: Variable) -> Variable:

@@ -36,6 +36,10 @@ class Compiled:
         function.restype = None
         function(*given)
 
+    def held(self, level: float) -> np.ndarray:
+        """The inputs, all 0 but the voltage or force."""
+        return np.array([level if variable.name == "U" else 0.0 for variable in self.machine.inputs])
+
     def defaults(self) -> np.ndarray:
         """The parameters that the file itself carries."""
         values = np.full(len(self.machine.parameters), np.nan)
@@ -55,7 +59,7 @@ class Compiled:
         out = np.empty((len(voltage), len(start)))
         for k, level in enumerate(voltage):
             state[0] = k * STRIDE * (SAMPLE / STRIDE)
-            self.call("advance", state, np.array([level]), q, SAMPLE / STRIDE, STRIDE)
+            self.call("advance", state, self.held(level), q, SAMPLE / STRIDE, STRIDE)
             out[k] = state[1:]
         return out
 

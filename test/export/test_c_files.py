@@ -55,7 +55,7 @@ def test_start_outputs_and_derivatives_are_those_of_the_model(name: str, tmp_pat
     state = machine.start(q)
     assert state.tolist() == [0.0, *model.state()]
     state[1:] = model.state(y=0.1, v=0.2)
-    out, slopes, given = np.empty(len(machine.machine.outputs)), np.empty(len(state)), np.array([2.0])
+    out, slopes, given = np.empty(len(machine.machine.outputs)), np.empty(len(state)), machine.held(2.0)
     machine.call("outputs", state, given, q, out)
     machine.call("derivatives", state, given, q, slopes)
     signals = model.outputs(state[None, 1:], np.array([2.0]), start=-1e-3)
@@ -71,8 +71,8 @@ def test_one_step_is_an_advance_by_one_and_moves_time_on(tmp_path: Path) -> None
     q = machine.defaults()
     one, ten = machine.start(q), machine.start(q)
     for _ in range(10):
-        machine.call("step", one, np.array([3.0]), q, 1e-4)
-    machine.call("advance", ten, np.array([3.0]), q, 1e-4, 10)
+        machine.call("step", one, machine.held(3.0), q, 1e-4)
+    machine.call("advance", ten, machine.held(3.0), q, 1e-4, 10)
     assert one == pytest.approx(ten, rel=1e-12)
     assert ten[0] == pytest.approx(1e-3, rel=1e-12)
 

@@ -165,6 +165,25 @@ def test_model_exchange_has_an_event_at_the_end_of_the_stroke_and_at_reversals(v
 
 
 @both
+def test_model_exchange_applies_play_after_each_step(version: int, tmp_path: Path) -> None:
+    base = load_model("axis")
+    more = {"backlash.gap": 5e-3, "valve_hysteresis.half_width": 0.4}
+    model = base.with_effects([*base.effects, "backlash", "valve_hysteresis"], more)
+    time = np.arange(0.0, 3.0005, 1e-3)
+    signal = np.array(list(zip(time, 4.0 * np.sin(4.0 * time), strict=True)), dtype=[("time", float), ("U", float)])
+    found = fmpy.simulate_fmu(
+        str(written(model, version, tmp_path)), stop_time=3.0, output_interval=1e-3, input=signal, step_size=1e-3,
+        output=["y", "y_measured", "seen"], fmi_type="ModelExchange", relative_tolerance=1e-6, record_events=False,
+    )  # fmt: skip
+    held = signal["U"][:-1]
+    states = model.simulate(held, model.state())
+    wanted = model.outputs(states, held)
+    assert np.ptp(wanted["y"] - wanted["y_measured"]) == pytest.approx(5e-3)  # the play is taken up on both sides
+    for name, tolerance in {"y": 5e-4, "y_measured": 5e-4, "seen": 0.02}.items():
+        assert np.abs(found[name][1:] - wanted[name]).max() < tolerance
+
+
+@both
 def test_sources_inside_compile_without_a_warning(version: int, tmp_path: Path) -> None:
     with zipfile.ZipFile(written(load_model("axis"), version, tmp_path)) as archive:
         archive.extractall(tmp_path)

@@ -104,7 +104,7 @@ def test_what_effects_may_say(tmp_path: Path) -> None:
         q, found = ours.defaults(), []
         for state in states:
             slopes = np.empty(3)
-            ours.call("derivatives", np.array([0.0, *state]), np.zeros(1), q, slopes)
+            ours.call("derivatives", np.array([0.0, *state]), ours.held(0.0), q, slopes)
             found.append(slopes[2])
         assert found == pytest.approx(wanted.tolist(), rel=1e-14), name
 

@@ -34,6 +34,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     target = _target(options)
     model = load_model(options.machine, effects_files=tuple(options.effects))
     version = int(options.fmi or FMI[0])
+    if options.format == "fmu":
+        console.note(f"Compiling {model.name} for FMI {version}.0")
     files = _write_c(model, target) if options.format == "c" else _write_fmu(model, target, version)
     console.say(f"{model.name} written to {' and '.join(map(str, files))}")
     told = {"schema_version": 1, "model": model.name, "format": options.format, "files": [str(f) for f in files]}
