@@ -5,129 +5,8 @@ from pneumo_ros.export.identifiers import comment, identifier
 from pneumo_ros.export.machine import EFFORT, Exported
 from pneumo_ros.export.signature import number_text
 from pneumo_ros.export.structs import structs
+from pneumo_ros.export.templates import filled
 from pneumo_ros.export.translation import functions_text
-
-_HEADER = """\
-/* The machine "{name}" as C99, written by pneumo_ros {version}; change the machine file, not this.
- *
- *     {m}_parameters p;
- *     {m}_state x;
- *     {m}_input u = {{0.0}};
- *     {m}_output o;
- *     {m}_parameters_default(&p);      values of the machine file
- *     {m}_init(&x, &p);                at rest, pressures atmospheric
- *     {m}_step(&x, &u, &p, {step});    one integration step of {step} s, the inputs held
- *     {m}_outputs(&x, &u, &p, &o);
- *
- * Effects: {effects}.
- * SI units, pressures absolute. Positive y extends the rod; forces are positive against positive velocity.
- * No memory is allocated and nothing is kept between calls. A double must be an IEEE 754 binary64, computed as such:
- * no -ffast-math. On a processor without doubles in hardware the step takes correspondingly longer.
- */
-#ifndef {M}_H
-#define {M}_H
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-
-#define {M}_STEP {step} /* s, usual step; twice as long is less accurate, much longer may be unstable */
-
-{structs}
-
-/* Parameters to the values of the machine file. */
-void {m}_parameters_default({m}_parameters *p);
-
-/* State at time 0: at rest, pressures atmospheric. Change members afterwards to start elsewhere. */
-void {m}_init({m}_state *x, const {m}_parameters *p);
-
-/* One integration step of dt seconds; x->t goes on by dt. */
-void {m}_step({m}_state *x, const {m}_input *u, const {m}_parameters *p, double dt);
-
-/* The same `steps` times, the input held. */
-void {m}_advance({m}_state *x, const {m}_input *u, const {m}_parameters *p, double dt, unsigned long steps);
-
-/* Readings of the sensors, forces and flows in this state. */
-void {m}_outputs(const {m}_state *x, const {m}_input *u, const {m}_parameters *p, {m}_output *o);
-
-/* Right-hand sides of the differential equations, dx/dt; dx->t is 1. */
-void {m}_derivatives(const {m}_state *x, const {m}_input *u, const {m}_parameters *p, {m}_state *dx);
-
-/* What happens once after each step: play, hysteresis. For an integrator of your own; {m}_step does it by itself. */
-void {m}_after_step({m}_state *x, const {m}_input *u, const {m}_parameters *p);
-
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
-
-_SOURCE = """\
-/* The machine "{name}" as C99, written by pneumo_ros {version}; its interface is {header}. */
-#include "{header}"
-
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
-#ifdef __FAST_MATH__
-#error "compile without -ffast-math: it changes the rounding that the elementary functions rely on"
-#endif
-
-#ifndef MACHINE_FUNCTION
-#define MACHINE_FUNCTION static /* faster and larger with gcc: static inline __attribute__((always_inline)) */
-#endif
-
-{functions}
-
-void {m}_parameters_default({m}_parameters *p)
-{{
-{values}
-}}
-
-void {m}_init({m}_state *x, const {m}_parameters *p)
-{{
-    (void)p;
-    x->t = 0.0;
-{start}
-}}
-
-void {m}_advance({m}_state *x, const {m}_input *u, const {m}_parameters *p, double dt, unsigned long steps)
-{{
-    const {m}_parameters q = *p;
-{load}
-    for (unsigned long k = 0; k < steps; ++k) {{
-        const double t = x->t + (double)k * dt;
-        {step_call};
-    }}
-{store}
-    x->t += (double)steps * dt;
-}}
-
-void {m}_step({m}_state *x, const {m}_input *u, const {m}_parameters *p, double dt)
-{{
-    {m}_advance(x, u, p, dt, 1);
-}}
-
-void {m}_outputs(const {m}_state *x, const {m}_input *u, const {m}_parameters *p, {m}_output *o)
-{{
-    {outputs_call};
-    o->{effort_member} = {effort};
-}}
-
-void {m}_derivatives(const {m}_state *x, const {m}_input *u, const {m}_parameters *p, {m}_state *dx)
-{{
-{rates}
-    {derivatives_call};
-    dx->t = 1.0;
-}}
-
-void {m}_after_step({m}_state *x, const {m}_input *u, const {m}_parameters *p)
-{{
-    {after_call};
-}}
-"""
 
 
 def c_files(machine: Exported, header: str) -> tuple[str, str]:
@@ -135,14 +14,14 @@ def c_files(machine: Exported, header: str) -> tuple[str, str]:
     functions, signatures = functions_text(machine)
     m = machine.prefix
     names = {"name": comment(machine.model.name), "version": __version__, "m": m, "M": m.upper(), "header": header}
-    head = _HEADER.format(
-        structs="\n\n".join(structs(machine)), step=number_text(machine.step),
+    head = filled(
+        "machine.h.in", structs="\n\n".join(structs(machine)), step=number_text(machine.step),
         effects=comment(", ".join(machine.model.effects) or "none"), **names,
     )  # fmt: skip
     targets = [f"&x->{v.member}" for v in machine.states]
     rates = signatures["derivatives"].width - len(machine.states)
-    source = _SOURCE.format(
-        functions=functions,
+    source = filled(
+        "machine.c.in", functions=functions,
         values="\n".join(f"    p->{v.member} = {number_text(v.start)};" for v in machine.parameters),
         start="\n".join(_start(machine)),
         load="\n".join(_loads(machine)),

@@ -4,6 +4,8 @@ import ast
 import math
 from dataclasses import dataclass
 
+from pneumo_ros.export.identifiers import identifier
+
 CONDITIONS = ("isnan", "isinf", "isfinite")
 
 
@@ -41,3 +43,14 @@ def called(node: ast.Call) -> str:
     if isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name):
         return node.func.attr if node.func.value.id in ("math", "np") else ""
     return node.func.id if isinstance(node.func, ast.Name) else ""
+
+
+def head(signature: Signature, struct: str) -> str:
+    """The first line of a function, without its brace."""
+    arguments = [f"double {identifier(name)}" for name in signature.arguments]
+    if signature.takes_parameters:
+        arguments.append(f"const {struct} *restrict p")
+    arguments += [f"double *out_{i}_" for i in range(signature.width)]
+    return (
+        f"MACHINE_FUNCTION {'void' if signature.width else 'double'} {signature.name}({', '.join(arguments) or 'void'})"
+    )

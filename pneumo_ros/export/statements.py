@@ -3,9 +3,10 @@
 import ast
 from collections import Counter
 
+from pneumo_ros.export.assigned import conditions, pairs
 from pneumo_ros.export.expression import Scope
 from pneumo_ros.export.identifiers import identifier
-from pneumo_ros.export.signature import InexpressibleError, Signature
+from pneumo_ros.export.signature import InexpressibleError, Signature, head
 
 _INDENT = "    "
 
@@ -15,17 +16,6 @@ def function_text(tree: ast.FunctionDef, signature: Signature, scope: Scope) -> 
     return _Function(tree, signature, scope).text()
 
 
-def head(signature: Signature, struct: str) -> str:
-    """The first line of a function, without its brace."""
-    arguments = [f"double {identifier(name)}" for name in signature.arguments]
-    if signature.takes_parameters:
-        arguments.append(f"const {struct} *restrict p")
-    arguments += [f"double *out_{i}_" for i in range(signature.width)]
-    return (
-        f"MACHINE_FUNCTION {'void' if signature.width else 'double'} {signature.name}({', '.join(arguments) or 'void'})"
-    )
-
-
 class _Function:
     def __init__(self, tree: ast.FunctionDef, signature: Signature, scope: Scope) -> None:
         self.tree, self.signature, self.scope = tree, signature, scope
@@ -33,22 +23,11 @@ class _Function:
         self.read = {n.id for n in nodes if isinstance(n.ctx, ast.Load)}
         self.writes = Counter(n.id for n in nodes if isinstance(n.ctx, ast.Store))
         self.temporaries = 0
-        self._find_flags()
-
-    def _find_flags(self) -> None:
-        """Names that only ever hold a condition."""
-        values: dict[str, list[ast.expr]] = {}
-        for node in ast.walk(self.tree):
-            for name, value in _pairs(node):
-                values.setdefault(name, []).append(value)
-        for name, given in values.items():
-            seen = name not in self.signature.arguments and len(given) == self.writes[name]
-            if seen and all(map(self.scope.is_flag, given)):
-                self.scope.flags.add(name)
+        scope.flags |= conditions(tree, set(signature.arguments), scope)
 
     def text(self) -> str:
         """The whole function."""
-        single = {n for s in self.tree.body for n, _ in _pairs(s) if self.writes[n] == 1}
+        single = {n for s in self.tree.body for n, _ in pairs(s) if self.writes[n] == 1}
         self.constants = single - set(self.signature.arguments)
         lines = [f"(void){identifier(a)};" for a in self.signature.arguments if a not in self.read]
         if self.signature.takes_parameters and not self._needs_parameters():
@@ -178,15 +157,3 @@ class _Function:
         count, last = f"held_{self.temporaries - 1}_", f"held_{self.temporaries}_"
         head_ = f"for (double {count} = {first}, {last} = {end}; {count} < {last}; {count} += 1.0) {{"
         return [head_, f"{_INDENT}{identifier(target.id)} = {count};", *self._nested(node.body), "}"]
-
-
-def _pairs(node: ast.AST) -> list[tuple[str, ast.expr]]:
-    """The names that an assignment sets, each with the expression it gets, where that can be seen."""
-    if not isinstance(node, ast.Assign) or len(node.targets) != 1:
-        return []
-    target, value = node.targets[0], node.value
-    if isinstance(target, ast.Name):
-        return [(target.id, value)]
-    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(target.elts) == len(value.elts):
-        return [(t.id, v) for t, v in zip(target.elts, value.elts, strict=True) if isinstance(t, ast.Name)]
-    return []

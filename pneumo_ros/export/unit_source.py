@@ -1,94 +1,14 @@
 """The C files of a functional mock-up unit: the machine, its table of variables, and one file that includes all."""
 
-from importlib.resources import files
-
 from pneumo_ros.export.c_files import c_files
 from pneumo_ros.export.machine import Exported
 from pneumo_ros.export.nominal import nominal
 from pneumo_ros.export.signature import number_text
+from pneumo_ros.export.templates import asset, filled
 from pneumo_ros.export.unit_variables import INDICATORS, UnitVariable, unit_variables
 
 MAIN = "all.c"
 
-_ALL = """\
-/* Compile this file only: it includes the others. Needs the mathematical library (-lm). */
-#if defined(__GNUC__) && !defined(MACHINE_FUNCTION)
-#define MACHINE_FUNCTION static inline __attribute__((always_inline))
-#endif
-#include "{m}.c"
-#include "variables.h"
-#include "unit.c"
-#include "fmi{version}.c"
-"""
-
-_VARIABLES = """\
-/* The variables of the machine by value reference. */
-#include <stddef.h>
-
-#define MACHINE_TOKEN "{token}"
-#define MACHINE_STEP {M}_STEP
-#define INPUTS {inputs}
-#define STATES {states}
-#define OUTPUTS {outputs}
-#define PARAMETERS {parameters}
-#define INDICATORS {indicators}
-
-{firsts}
-
-typedef {m}_state machine_state;
-typedef {m}_parameters machine_parameters;
-#define machine_parameters_default {m}_parameters_default
-#define machine_init {m}_init
-#define machine_advance {m}_advance
-#define machine_outputs {m}_outputs
-#define machine_derivatives {m}_derivatives
-#define machine_after_step {m}_after_step
-
-typedef struct {{
-    {m}_state x, dx;
-    {m}_input u;
-    {m}_parameters p;
-    {m}_output o;
-    double step;
-    double indicators[INDICATORS];
-}} machine_values;
-
-typedef struct {{
-    const char *name;
-    double low, high;
-}} machine_range;
-
-static const machine_range machine_ranges[PARAMETERS] = {{
-{ranges}
-}};
-
-static const double machine_nominals[STATES] = {{{nominals}}};
-
-static double *machine_variable(machine_values *m, unsigned long reference)
-{{
-    switch (reference) {{
-{cases}
-    default:
-        return NULL;
-    }}
-}}
-
-/* States that nobody set begin as the parameter or state that they follow. */
-static void machine_follow(machine_values *m, const unsigned char *given)
-{{
-    (void)m;
-    (void)given;
-{follow}
-}}
-
-/* Why the parameters make no machine, or NULL. */
-static const char *machine_unfit(const machine_parameters *p)
-{{
-    (void)p;
-{unfit}
-    return NULL;
-}}
-"""
 
 _UNFIT = """\
     if (p->chambers.volume_{side} <= 0.5 * p->piston.stroke * p->piston.area_{side}) {{
@@ -100,22 +20,21 @@ def unit_sources(machine: Exported, version: int, token: str) -> dict[str, str]:
     """Names and texts of all C files; UsageError for what C cannot say."""
     m = machine.prefix
     header, source = c_files(machine, f"{m}.h")
-    assets = files("pneumo_ros.export").joinpath("assets")
-    fixed = {name: assets.joinpath(name).read_text(encoding="utf-8") for name in ("unit.c", f"fmi{version}.c")}
+    fixed = {name: asset(name) for name in ("unit.c", f"fmi{version}.c")}
     return {
         f"{m}.h": header,
         f"{m}.c": source,
         "variables.h": _variables(machine, token),
         **fixed,
-        MAIN: _ALL.format(m=m, version=version),
+        MAIN: filled("all.c.in", m=m, version=version),
     }
 
 
 def _variables(machine: Exported, token: str) -> str:
     rows = unit_variables(machine)
     firsts = {row.block: row.reference for row in reversed(rows)}
-    return _VARIABLES.format(
-        m=machine.prefix, M=machine.prefix.upper(), token=token,
+    return filled(
+        "variables.h.in", m=machine.prefix, M=machine.prefix.upper(), token=token,
         inputs=len(machine.inputs), states=len(machine.states), outputs=len(machine.outputs),
         parameters=len(machine.parameters), indicators=len(INDICATORS),
         firsts="\n".join(f"#define {block} {first}ul" for block, first in sorted(firsts.items(), key=lambda f: f[1])),
