@@ -26,7 +26,7 @@ WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, a
 PARQUET = ["pyarrow>=14"]  # tables in Parquet, for pneumo import
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
-TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0"]
+TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.3.20"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
 BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 

@@ -24,6 +24,7 @@ VERBS = (
     "effects",
     "experiment",
     "tune",
+    "export",
     "fleet",
     "view",
     "workbench",
