@@ -20,7 +20,11 @@ Array = NDArray[np.float64]
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts at its time
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
 _FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0}  # the best sensors of such machines
-SENSORS = {"p_a": "chamber_a/pressure", "p_b": "chamber_b/pressure"}  # topic of each input that is measured
+SENSORS = {  # topic of each input that is measured
+    "p_a": "chamber_a/pressure",
+    "p_b": "chamber_b/pressure",
+    "measured_supply": "supply/pressure",
+}
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
 
@@ -36,7 +40,7 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
-    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held: p_a and p_b [Pa]
+    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa]
 
     def __len__(self) -> int:
         return len(self.position)
@@ -129,6 +133,7 @@ def make_run(recording: Recording, force_driven: bool | None = None) -> Run:
     cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
     held = np.interp(cells, time, _array(recording.effort)) if driven else _commands_at(recording, cells)
     pressures = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
+    pressures |= {"measured_supply": recording.supply_pressure}
     further = {name: np.interp(cells, time, p) for name, p in pressures.items() if p is not None}
     return Run(
         recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
