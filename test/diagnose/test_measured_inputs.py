@@ -14,7 +14,7 @@ from rig.effects import Wish, build
 from pneumo_ros.diagnose.adding import Adding, add
 from pneumo_ros.diagnose.diagnosis import diagnose
 from pneumo_ros.diagnose.fitter import Fitter
-from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
+from pneumo_ros.diagnose.hypothesis import Hypothesis, missing, unmeasured
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.diagnose.screening import screen
 from pneumo_ros.errors import DataError
@@ -112,6 +112,8 @@ def test_without_both_pressures_it_is_not_offered(lost: tuple[str, ...]) -> None
     offered = missing(rod(), measured_inputs([runs()[0], blind(runs()[1], *lost)]))
     assert EFFECT not in offered
     assert set(missing(rod(), measured_inputs(runs()))) - set(offered) == {EFFECT}
+    assert unmeasured(rod(), measured_inputs([blind(runs()[1], *lost)])) == {EFFECT: lost}
+    assert unmeasured(rod(), measured_inputs(runs())) == {}
     with pytest.raises(DataError, match=f"effect {EFFECT} of 'rod' reads as {' and '.join(lost)}; record also chamber"):
         add(rod(), [EFFECT], [runs()[0]], [blind(runs()[1], *lost)])
 

@@ -66,6 +66,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
     model = measuring(model, [*train, *held], console)
+    for name, topics in unseen(model, [*train, *held]).items():
+        console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
     outcome, estimates = diagnosed(model, train, held, console, end)
     experiment = suggested(outcome, options.out or options.model, console)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
@@ -101,6 +103,15 @@ def untried(model: "Model") -> list[str]:
     library = model.library
     own = sorted({*library.names()} - {*Library().names(), *model.effects})
     return [name for name in own if not coordinates(library.find(name))]
+
+
+def unseen(model: "Model", runs: "Sequence[Run]") -> dict[str, list[str]]:
+    """Effects that are not tried because a recording lacks a signal that they read, and the topics of these signals."""
+    from pneumo_ros.diagnose.hypothesis import unmeasured
+    from pneumo_ros.runs.inputs import measured_inputs
+    from pneumo_ros.runs.run import SENSORS
+
+    return {name: [SENSORS[one] for one in own] for name, own in unmeasured(model, measured_inputs(runs)).items()}
 
 
 def diagnosed(
