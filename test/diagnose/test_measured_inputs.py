@@ -123,6 +123,17 @@ def test_leaks_of_chambers_that_the_machine_lacks_are_not_offered() -> None:
     assert not {"cross_piston_leakage", "line_delay", "pressure_sensor_offset", "dead_volume"} & set(offered)
 
 
+@pytest.mark.parametrize(("lost", "conditions"), [((), 5), (("p_a", "p_b"), 3)])
+def test_laws_may_bend_with_the_pressures_that_are_recorded(lost: tuple[str, ...], conditions: int) -> None:
+    """A seal's friction grows less than in proportion: what is left over must not pass for another effect."""
+    train, *_, held = (blind(run, *lost) for run in runs())
+    fitter = Fitter(rod(), [train], [held])
+    assert [seen.shape[1] for seen in fitter.conditions] == [2 * conditions] * 2
+    if not lost:
+        middle = train.sampled(("U", "p_a"))[np.round(fitter.train.time * 1e3).astype(int), 1]
+        assert np.corrcoef(fitter.conditions[0][:, 2], middle)[0, 1] == pytest.approx(1.0)
+
+
 @lru_cache(maxsize=1)
 def added() -> Adding:
     """It, added by name."""
