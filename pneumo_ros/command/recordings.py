@@ -61,6 +61,17 @@ def read_one(path: str, options: argparse.Namespace, console: Console, model: "M
     return reading
 
 
+def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model":
+    """The model with the recorded supply pressure in place of its constant, where every run has it; a note says so."""
+    from pneumo_ros.runs import inputs
+
+    found = inputs.measuring(model, runs)
+    if found.inputs != model.inputs:
+        taken = "measured, in place of" if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
+        console.note(f"The supply pressure is {taken} air.supply_pressure")
+    return found
+
+
 def read_named(bags: Sequence[str], options: argparse.Namespace, console: Console, model: "Model") -> "list[Run]":
     """The recordings named, each of which must be usable, as runs for `model`; otherwise as `read_one`."""
     return [read_one(bag, options, console, model).run for bag in bags]

@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.console import Console, table_text
-from pneumo_ros.command.recordings import read_named
+from pneumo_ros.command.recordings import measuring, read_named
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable
 
@@ -36,7 +36,8 @@ def refitted(
 
     if options.out:
         check_writable(options.out)
-    used = read_named(options.fit, options, console, model) if options.fit else runs
+    used = read_named(options.fit, options, console, model.measuring(())) if options.fit else runs
+    model = measuring(model, [*runs, *used], console)
     with console.progress("Refitting") as progress:
         found = refit(model, used, progress=lambda share, _: progress(share))
     if options.out:

@@ -60,7 +60,7 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Co
     rival = added.indistinguishable_from[0]
     try:
         with console.progress("Choosing an experiment") as progress:
-            ranked = separate(outcome.model, added.effect, rival, progress=progress)
+            ranked = separate(outcome.model.measuring(()), added.effect, rival, progress=progress)
     except PneumoError as problem:  # the diagnosis is valid without it
         return f"No experiment that distinguishes {added.effect} from {rival} could be simulated: {problem}."
     except KeyboardInterrupt:

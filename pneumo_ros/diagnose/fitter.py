@@ -143,7 +143,8 @@ class Fitter:
         """The model on the part of the training evidence for the first ranking; laws as free in shape as in `fits`."""
         if self.part is self.train:
             return self.fits(model)[0]
-        seen = relative(conditions(self.part), conditions(self.train))
+        inputs = self.whole.inputs
+        seen = relative(conditions(self.part, inputs), conditions(self.train, inputs))
         return freed(base_fit(self.part, self.whole, model, self.known(model)), self.added(model), seen)
 
     @cached_property
@@ -159,8 +160,8 @@ class Fitter:
     @cached_property
     def conditions(self) -> tuple[Array, Array]:
         """Conditions of the training and held-out residuals, relative to the mean and scatter of the training ones."""
-        here = conditions(self.train)
-        return relative(here, here), relative(conditions(self.held), here)
+        here = conditions(self.train, self.whole.inputs)
+        return relative(here, here), relative(conditions(self.held, self.whole.inputs), here)
 
     def _fit(self, model: Model) -> BaseFit:
         """The model on training evidence."""

@@ -17,22 +17,25 @@ from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
 from pneumo_ros.diagnose.follow import reads_wrong
 from pneumo_ros.diagnose.hypothesis import BaseFit
+from pneumo_ros.plant.signals import DRIVE
 
 Array = NDArray[np.float64]
 
+PRESSURES = ("p_a", "p_b")
 LAW_SPREAD = 0.1  # standard deviation of e_k: a law is known to 10 % over the usual range of its variables
 
 
-def conditions(evidence: Evidence) -> Array:
+def conditions(evidence: Evidence, inputs: Sequence[str] = ()) -> Array:
     """Conditions of each residual in the middle of its window: position, speed, pressures, magnitude of the input.
 
-    (residuals, 3 or 5).
+    (residuals, 3 to 5). `inputs`: those of a force-driven model; measured pressures among them are conditions, too.
     """
-    columns = 3 + 2 * (not evidence.by_run[0].run.force_driven)
+    pressures = tuple(name for name in PRESSURES if name in inputs)
+    columns = 3 + (len(pressures) if evidence.by_run[0].run.force_driven else 2)
     values = np.zeros((len(evidence.time), columns))
     for part in evidence.by_run:
         own = evidence.run == part.families[0].run
-        values[own] = _seen(part, evidence.time[own])
+        values[own] = _seen(part, evidence.time[own], pressures)
     return values
 
 
@@ -61,11 +64,11 @@ def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
     )
 
 
-def _seen(part: RunEvidence, time: Array) -> Array:
+def _seen(part: RunEvidence, time: Array, inputs: tuple[str, ...]) -> Array:
     rows = np.clip(np.round(time / part.run.sample_time).astype(int), 0, len(part.frame.states) - 1)
     states = part.frame.states[rows]
-    pressures = [] if part.run.force_driven else [states[:, 2], states[:, 3]]
-    return np.column_stack([states[:, 0], np.abs(states[:, 1]), *pressures, np.abs(part.held[rows])])
+    pressures = part.run.sampled((DRIVE, *inputs))[rows, 1:] if inputs else states[:, 2:4]
+    return np.column_stack([states[:, 0], np.abs(states[:, 1]), pressures, np.abs(part.held[rows])])
 
 
 def _acting(fit: BaseFit, effect: str) -> Array:

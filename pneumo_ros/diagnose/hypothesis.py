@@ -16,6 +16,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
+from pneumo_ros.runs.run import SENSORS
 from pneumo_ros.shooting.bounded import bounded_minimum, finite
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
 
@@ -134,6 +135,14 @@ def missing(model: Model, measured: Collection[str]) -> dict[str, tuple[Coordina
             if effect and _fits(model, name, measured):
                 found[name] = effect
     return found
+
+
+def unmeasured(model: Model, measured: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Effects that would be missing candidates but read inputs that are not among `measured`, and those inputs."""
+    others = {*measured, *SENSORS}
+    names = [name for name in missing(model, others) if not _fits(model, name, measured)]
+    read = {name: model.with_effects([*model.effects, name]).inputs for name in names}
+    return {name: tuple(one for one in own if one not in measured) for name, own in read.items()}
 
 
 def _fits(model: Model, name: str, measured: Collection[str]) -> bool:

@@ -11,6 +11,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.reading.read import read_runs
+from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.runs.run import Run
 
 HELD = "hold"  # start of the names of held-out recordings
@@ -51,7 +52,7 @@ def _identification(machine: Model, runs: list[Run], held: list[Run]) -> dict[st
 
 def _diagnosis(machine: Model, fitted: list[Run], held: list[Run]) -> dict[str, Any]:
     """Effects that the machine lacks, and all parameters refitted with them."""
-    search = Search(machine, fitted, held)
+    search = Search(measuring(machine, [*fitted, *held]), fitted, held)
     course = search.run()
     outcome = conclude(search, course, lambda share, text: None)
     parameters = {

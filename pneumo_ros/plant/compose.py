@@ -36,7 +36,8 @@ SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # si
 class Composition:
     """Composed effects: states, parameters and inputs in kernel order, observed signals, and the module text.
 
-    `inputs`: U, then the measured signals that the effects read; `sensed` holds the states that sensors measure;
+    `inputs`: U, then the measured signals that the effects read; `measured`: signals that were asked for in place of a
+    constant; `sensed` holds the states that sensors measure;
     `true_sensors`: no effect changes the readings.
     """
 
@@ -44,6 +45,7 @@ class Composition:
     states: tuple[str, ...]
     parameters: tuple[str, ...]  # dotted
     inputs: tuple[str, ...]
+    measured: tuple[str, ...]
     observed: tuple[str, ...]
     sensed: tuple[str, ...]
     true_sensors: bool
@@ -68,10 +70,10 @@ _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 class Resolver:
     """Resolves every name in the equations of a composition."""
 
-    def __init__(self, effects: tuple[type[Effect], ...]) -> None:
-        self.effects = effects
+    def __init__(self, effects: tuple[type[Effect], ...], measured: tuple[str, ...] = ()) -> None:
+        self.effects, self.measured = effects, measured
         self.states: dict[str, type[Effect]] = {}
-        self.inputs = inputs_of(effects)
+        self.inputs = inputs_of(effects, measured)
         self.owners: dict[str, list[str]] = {}
         self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects, and the function of each
         for effect in effects:
@@ -145,13 +147,13 @@ class Resolver:
 
 
 @lru_cache(maxsize=256)  # a diagnosis tries some thirty effects beside each model, again and again
-def compose(effects: tuple[type[Effect], ...]) -> Composition:
-    """Compose effects, in the given order, into one kernel.
+def compose(effects: tuple[type[Effect], ...], measured: tuple[str, ...] = ()) -> Composition:
+    """Compose effects, in the given order, into one kernel; `measured` signals take the place of constants.
 
     Raises UsageError when names clash, an argument is unknown, a single signal has two sources, or effects depend on
     each other in a loop.
     """
-    resolver = Resolver(effects)
+    resolver = Resolver(effects, measured)
     for effect in effects:
         for key in ("equations", "outputs", "advance"):
             if key in effect.functions:
@@ -163,4 +165,4 @@ def compose(effects: tuple[type[Effect], ...]) -> Composition:
     true_sensors = not any(name in resolver.writers for name in signals)
     text = module_text(resolver, parameters, observed, () if true_sensors else signals)
     sensed = tuple(SENSED[name] for name in signals)
-    return Composition(effects, states, parameters, resolver.inputs, observed, sensed, true_sensors, text)
+    return Composition(effects, states, parameters, resolver.inputs, measured, observed, sensed, true_sensors, text)

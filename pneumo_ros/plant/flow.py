@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect
-from pneumo_ros.plant.reach import names_in
+from pneumo_ros.plant.reach import default_of, names_in
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.plant.source import SourceBook
 
@@ -90,8 +90,9 @@ class FlowWriter:
 
     def _default(self, name: str) -> str:
         """Emit the default expression of a single signal with every name in it resolved."""
-        tree: Any = ast.parse(SIGNALS[name].default, mode="eval")
-        if SIGNALS[name].without and any(self._lacks(key) for key in names_in(SIGNALS[name].default)):
+        default = default_of(SIGNALS[name], self.resolver.measured)
+        tree: Any = ast.parse(default, mode="eval")
+        if SIGNALS[name].without and any(self._lacks(key) for key in names_in(default)):
             return SIGNALS[name].without
         for node in ast.walk(tree):
             if isinstance(node, ast.Name) and hasattr(maths, node.id):

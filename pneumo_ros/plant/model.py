@@ -55,10 +55,11 @@ class Model:
         frame: Iterable[str] = FRAME,
         defaults: bool = False,
         uncertainty: Mapping[str, object] | None = None,
+        measured: Iterable[str] = (),
     ) -> "Model":
         """A model of `effects` with `values` by dotted name, and `uncertainty`: deviations of some of them.
 
-        A missing value is an error unless `defaults` or unless its default adds nothing.
+        A missing value is an error unless `defaults` or unless its default adds nothing. `measured` as in `measuring`.
 
         Raises UsageError, with the nearest names, for unknown or repeated effects and unknown, missing or bad values.
         """
@@ -71,7 +72,7 @@ class Model:
         if sentence := without_chambers(parts, library):
             raise UsageError(sentence)
         try:
-            composition = compose(parts)
+            composition = compose(parts, tuple(measured))
         except UsageError as problem:
             if sentence := lacking(parts, library):
                 raise UsageError(sentence) from problem
@@ -146,11 +147,26 @@ class Model:
     def with_effects(self, effects: Iterable[str], values: Mapping[str, object] | None = None) -> "Model":
         """Another list of effects; shared parameters keep their values, new ones take `values` or their defaults."""
         frame = tuple(e.name for e in self.composition.effects if e.name in FRAME)
-        model = Model.build(effects, {}, name=self.name, library=self.library, frame=frame, defaults=True)
+        measured = self.composition.measured
+        model = Model.build(
+            effects, {}, name=self.name, library=self.library, frame=frame, defaults=True, measured=measured
+        )
         kept = {key: value for key, value in self.parameters.items() if key in model.parameters}
         stated = {key: value for key, value in self.uncertainty.items() if key in model.parameters}
         larger = model.with_parameters({**kept, **(values or {})})
         return Model(larger.composition, larger.parameters, larger.name, larger.library, stated)
+
+    def measuring(self, names: Iterable[str]) -> "Model":
+        """The same machine with the named measured signals as inputs, in place of constants; () for none.
+
+        `measured_supply` takes the place of air.supply_pressure where the valve's flow depends on it.
+        """
+        measured = tuple(sorted(names))
+        if measured == self.composition.measured:
+            return self
+        return Model(
+            compose(self.composition.effects, measured), self.parameters, self.name, self.library, self.uncertainty
+        )
 
     # --- simulation -------------------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from pneumo_ros.plant.effect import Effect
-from pneumo_ros.plant.signals import DRIVE, SIGNALS
+from pneumo_ros.plant.signals import DRIVE, SIGNALS, Signal
 
 _IN_KERNEL = ("equations", "outputs", "advance")  # functions of an effect that a kernel calls
 
@@ -14,16 +14,29 @@ def names_in(default: str) -> list[str]:
     return [node.id for node in ast.walk(ast.parse(default, mode="eval")) if isinstance(node, ast.Name)]
 
 
-def inputs_of(effects: Sequence[type[Effect]]) -> tuple[str, ...]:
-    """The held inputs of a machine in kernel order: its drive, then the measured signals that its effects read."""
+def default_of(signal: Signal, measured: Collection[str]) -> str:
+    """The default of a signal where the signals `measured` are asked for as inputs."""
+    asked = signal.measured and all(name in measured for name in names_in(signal.measured) if _is_measured(name))
+    return signal.measured if asked else signal.default
+
+
+def _is_measured(name: str) -> bool:
+    return name in SIGNALS and SIGNALS[name].kind == "measured"
+
+
+def inputs_of(effects: Sequence[type[Effect]], measured: Collection[str] = ()) -> tuple[str, ...]:
+    """The held inputs of a machine in kernel order: its drive, then the measured signals that its effects read.
+
+    `measured`: those that are to take the place of a constant, where one is read.
+    """
     states = {state for effect in effects for state in effect.states}
     read = {name for effect in effects for reads, _ in _functions(effect) for name in reads}
     todo = list(read)
     while todo:  # each signal once
-        new = {name for name in _defaults(todo.pop()) if name not in read}
+        new = {name for name in _defaults(todo.pop(), measured) if name not in read}
         read |= new
         todo += new
-    return DRIVE, *(name for name in SIGNALS if SIGNALS[name].kind == "measured" and name in read - states)
+    return DRIVE, *(name for name in SIGNALS if _is_measured(name) and name in read - states)
 
 
 def acting(effects: Sequence[type[Effect]], roots: Collection[str]) -> set[str]:
@@ -49,5 +62,5 @@ def _functions(effect: type[Effect]) -> Iterator[tuple[Iterable[str], Iterable[s
     return ((function.reads, function.writes) for function in own)
 
 
-def _defaults(name: str) -> list[str]:
-    return names_in(SIGNALS[name].default) if name in SIGNALS else []
+def _defaults(name: str, measured: Collection[str] = ()) -> list[str]:
+    return names_in(default_of(SIGNALS[name], measured)) if name in SIGNALS else []

@@ -18,7 +18,8 @@ Kind = Literal["input", "measured", "sum", "product", "single"]
 class Signal:
     """One row: name as it stands in equations, kind, unit, default (a number or an expression) and meaning.
 
-    `without`: the default of a machine that lacks a parameter in `default`; empty where it must have it.
+    `without`: the default of a machine that lacks a parameter in `default`; empty where it must have it. `measured`:
+    the default where the measured signals in it are asked for as inputs; empty where there are none.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Signal:
     default: str
     meaning: str
     without: str = ""
+    measured: str = ""
 
 
 _TABLE = (
@@ -39,13 +41,21 @@ _TABLE = (
     Signal(
         "p_b", "measured", "Pa", "0.0", "measured pressure in chamber b, absolute; a state where there are chambers"
     ),
+    Signal("measured_supply", "measured", "Pa", "0.0", "measured supply pressure, absolute"),
     # valve
     Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
     Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),
     Signal("spool", "single", "V", "voltage", "spool position, in volts of command"),
     Signal("opening", "single", "V", "spool", "spool position beyond the dead zone"),
     Signal("supply_drop", "sum", "Pa", "0.0", "pressure lost between supply and valve"),
-    Signal("p_s", "single", "Pa", "supply_pressure - supply_drop", "supply pressure at the valve, absolute"),
+    Signal(
+        "p_s",
+        "single",
+        "Pa",
+        "supply_pressure - supply_drop",
+        "supply pressure at the valve, absolute",
+        measured="measured_supply - supply_drop",
+    ),
     Signal("p_atm", "single", "Pa", "atmospheric_pressure", "pressure of the atmosphere, absolute", "101325.0"),
     Signal("valve_flow_a", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber a"),
     Signal("valve_flow_b", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber b"),

@@ -56,7 +56,10 @@ class Stepper:
 
     def advance_in_parts(self, inputs: Array) -> Array:
         """One sample with finite inputs for each of its steps, (parts,) or (parts, inputs); otherwise as `advance`."""
-        return self._sample(inputs.reshape(self.parts, -1), 1, self.parts)
+        width = self._inputs.shape[1]
+        if inputs.size != self.parts * width:  # the kernel would read beyond their end
+            raise UsageError(f"inputs of shape {inputs.shape} do not fit {self.parts} steps of {self.model.inputs}")
+        return self._sample(inputs.reshape(self.parts, width), 1, self.parts)
 
     def _sample(self, inputs: Array, stride: int, every: int) -> Array:
         """Hold each row of inputs for `stride` steps; `every` rows make the sample."""

@@ -9,7 +9,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.reading.plausible import check_run
 from pneumo_ros.records import Recording, read_recording
 from pneumo_ros.records.corrections import corrected
-from pneumo_ros.records.unfit import check_pressures
+from pneumo_ros.records.unfit import check_pressures, check_supply
 from pneumo_ros.runs.cuts import Cut, without
 from pneumo_ros.runs.inputs import check_inputs
 from pneumo_ros.runs.run import Run, make_run
@@ -61,23 +61,27 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 
     Raises DataError when it lacks a signal that `model` needs, or is not plausible (see `check_run`).
     """
-    run, notes = _with_pressures(
-        recording, model, without(make_run(recording, model.force_driven, model.imposed), cuts)
-    )
+    run, notes = _trusted(recording, model, without(make_run(recording, model.force_driven, model.imposed), cuts))
     check_inputs(model, run)
     return run, [f"{note}." for note in (*notes, *check_run(model, run))]
 
 
-def _with_pressures(recording: Recording, model: Model, run: Run) -> tuple[Run, list[str]]:
-    """The run; without its pressures as inputs, and a note, where they are not absolute and the model needs none."""
-    try:
-        if run.further:
-            check_pressures(recording)
-    except DataError as problem:
-        if set(model.inputs) & set(run.further):
-            raise
-        return replace(run, further={}), [f"its pressures are not used, and no effect of them is tried: {problem}"]
-    return run, []
+def _trusted(recording: Recording, model: Model, run: Run) -> tuple[Run, list[str]]:
+    """The run without measured inputs that are not plausible, and a note on each; DataError if `model` reads them."""
+    chambers, notes = ("p_a", "p_b") if model.force_driven else (), list[str]()
+    for names, check, what in (
+        (chambers, check_pressures, "its pressures are not used, and no effect of them is tried"),
+        (("measured_supply",), check_supply, "its supply pressure is not used"),
+    ):
+        try:
+            if set(names) & set(run.further):
+                check(recording)
+        except DataError as problem:
+            if set(model.inputs) & set(names):
+                raise
+            run = replace(run, further={name: held for name, held in run.further.items() if name not in names})
+            notes.append(f"{what}: {problem}")
+    return run, notes
 
 
 def read_run(path: str | Path, model: Model, options: ReadOptions | None = None, cuts: Sequence[Cut] = ()) -> Reading:

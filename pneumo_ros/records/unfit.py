@@ -9,6 +9,7 @@ from pneumo_ros.records.recording import Array, Recording
 _FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
 _VACUUM, _MOST = 1e4, 1e7  # Pa: lowest and highest pressure in a chamber of a pneumatic axis
 _USUAL = 5e4  # Pa: the pressures of a running axis reach it, gauge or absolute
+_ABOVE_SUPPLY = 1.1  # times the supply pressure: most that a chamber reaches for long
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
 # the highest value of a running axis, 0.9 to 13 bar, in each unit; the ranges of the units do not overlap much
 _HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 145.0), ("kPa", 1300.0), ("hPa", _VACUUM))
@@ -52,6 +53,20 @@ def check_pressures(recording: Recording) -> None:
     given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
     for topic, pressure in given.items():
         _check_size(recording, topic, pressure, list(given.values()))
+
+
+def check_supply(recording: Recording) -> None:
+    """Raises DataError for a supply pressure that is not absolute in Pa, or lower than what the chambers reach."""
+    supply = recording.supply_pressure
+    if supply is None:
+        return
+    _check_size(recording, "supply/pressure", supply, [supply])
+    for topic, pressure in (("chamber_a", recording.pressure_a), ("chamber_b", recording.pressure_b)):
+        if pressure is not None and np.quantile(pressure, 0.99) > _ABOVE_SUPPLY * supply.max():
+            raise DataError(
+                f"{recording.name}: supply/pressure is at most {supply.max():.4g} Pa, and {topic}/pressure reaches "
+                f"{pressure.max():.4g} Pa: one of them is gauge pressure, or in another unit"
+            )
 
 
 def _check_time(recording: Recording) -> None:

@@ -7,10 +7,17 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import SENSORS, Run
 
+IN_PLACE = ("measured_supply",)  # inputs that take the place of a constant
+
 
 def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
     """Names of the inputs that every run holds, U first."""
     return DRIVE, *(name for name in SENSORS if all(name in run.further for run in runs))
+
+
+def measuring(model: Model, runs: Sequence[Run]) -> Model:
+    """The model with the recorded supply pressure in place of its constant, where every run has it."""
+    return model.measuring([name for name in IN_PLACE if name in measured_inputs(runs)])
 
 
 def check_inputs(model: Model, run: Run) -> None:

@@ -21,7 +21,11 @@ PARTS = 10  # the input is held over tenths of a sample, so that a command betwe
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
 # the best sensors of such machines
 _FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3}
-SENSORS = {"p_a": "chamber_a/pressure", "p_b": "chamber_b/pressure"}  # topic of each input that is measured
+SENSORS = {  # topic of each input that is measured
+    "p_a": "chamber_a/pressure",
+    "p_b": "chamber_b/pressure",
+    "measured_supply": "supply/pressure",
+}
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
 
@@ -37,7 +41,7 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
-    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held: p_a and p_b [Pa]
+    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa]
     imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the input is the
     # velocity [m/s] and pressures are predicted
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
@@ -148,6 +152,7 @@ def make_run(recording: Recording, force_driven: bool | None = None, imposed: bo
     else:
         held = np.interp(cells, time, _force(recording)) if driven else _commands_at(recording, cells)
     pressures = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
+    pressures |= {"measured_supply": recording.supply_pressure}
     further = {name: np.interp(cells, time, p) for name, p in pressures.items() if p is not None}
     return Run(
         recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pneumo_ros.command.main import main
-from pneumo_ros.plant import load_model
-from pneumo_ros.records import read_recording
+from pneumo_ros.plant import load_model, save_model
+from pneumo_ros.records import read_recording, write_recording
 
 pytestmark = pytest.mark.usefixtures("_in_folder")
 
@@ -106,3 +106,32 @@ def test_a_replay_says_how_long_it_can_be(capsys: pytest.CaptureFixture[str]) ->
     assert main(["simulate", "--input", "constant:1", "--seconds", "0.5", "--out", "first", "--quiet"]) == 0
     assert main(["simulate", "--input", "first", "--seconds", "2", "--out", "run"]) == 2
     assert "lasts 0.5 s" in capsys.readouterr().err
+
+
+def force_driven_files() -> None:
+    """`sealed.yaml`, a rod whose friction follows the pressures, and `pushed`, a recording with them."""
+    emps = load_model("emps")
+    save_model(emps.with_effects([*emps.effects, "pressure_dependent_friction"]), "sealed.yaml")
+    time = np.arange(2000) * 1e-3
+    signals = {"position": 0.02 * np.sin(time), "effort": 300.0 * np.sin(6.0 * time)}
+    pressures = {"pressure_a": 4e5 + 1e5 * np.sin(5.0 * time), "pressure_b": 3e5 + 1e5 * np.cos(5.0 * time)}
+    write_recording("pushed", time=time, **signals, **pressures)
+
+
+def test_a_replay_takes_measured_pressures_and_records_them() -> None:
+    force_driven_files()
+    assert main(["simulate", "--input", "pushed", "--model", "sealed.yaml", "--out", "second", "--quiet"]) == 0
+    first, second = read_recording("pushed"), read_recording("second")
+    for name in ("effort", "pressure_a", "pressure_b"):
+        half = np.abs(np.diff(getattr(first, name))).max()  # inputs are those of the first tenth of a sample
+        np.testing.assert_allclose(getattr(second, name), getattr(first, name), atol=half)
+    assert main(["simulate", "--input", "second", "--model", "sealed.yaml", "--out", "third", "--quiet"]) == 0
+    np.testing.assert_allclose(read_recording("third").position, second.position, atol=2e-4)
+
+
+def test_a_formula_has_no_pressures(capsys: pytest.CaptureFixture[str]) -> None:
+    force_driven_files()
+    assert main(["simulate", "--input", "sine:300,1", "--model", "sealed.yaml", "--out", "run", "--quiet"]) == 2
+    said = capsys.readouterr().err
+    assert "effects of 'sealed' read measured signals (p_a, p_b); give --input a recording that has them" in said
+    assert not Path("run").exists()

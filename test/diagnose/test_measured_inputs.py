@@ -14,7 +14,7 @@ from rig.effects import Wish, build
 from pneumo_ros.diagnose.adding import Adding, add
 from pneumo_ros.diagnose.diagnosis import diagnose
 from pneumo_ros.diagnose.fitter import Fitter
-from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
+from pneumo_ros.diagnose.hypothesis import Hypothesis, missing, unmeasured
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.diagnose.screening import screen
 from pneumo_ros.errors import DataError
@@ -112,6 +112,8 @@ def test_without_both_pressures_it_is_not_offered(lost: tuple[str, ...]) -> None
     offered = missing(rod(), measured_inputs([runs()[0], blind(runs()[1], *lost)]))
     assert EFFECT not in offered
     assert set(missing(rod(), measured_inputs(runs()))) - set(offered) == {EFFECT}
+    assert unmeasured(rod(), measured_inputs([blind(runs()[1], *lost)])) == {EFFECT: lost}
+    assert unmeasured(rod(), measured_inputs(runs())) == {}
     with pytest.raises(DataError, match=f"effect {EFFECT} of 'rod' reads as {' and '.join(lost)}; record also chamber"):
         add(rod(), [EFFECT], [runs()[0]], [blind(runs()[1], *lost)])
 
@@ -119,6 +121,17 @@ def test_without_both_pressures_it_is_not_offered(lost: tuple[str, ...]) -> None
 def test_leaks_of_chambers_that_the_machine_lacks_are_not_offered() -> None:
     offered = missing(rod(), measured_inputs(runs()))
     assert not {"cross_piston_leakage", "line_delay", "pressure_sensor_offset", "dead_volume"} & set(offered)
+
+
+@pytest.mark.parametrize(("lost", "conditions"), [((), 5), (("p_a", "p_b"), 3)])
+def test_laws_may_bend_with_the_pressures_that_are_recorded(lost: tuple[str, ...], conditions: int) -> None:
+    """A seal's friction grows less than in proportion: what is left over must not pass for another effect."""
+    train, *_, held = (blind(run, *lost) for run in runs())
+    fitter = Fitter(rod(), [train], [held])
+    assert [seen.shape[1] for seen in fitter.conditions] == [2 * conditions] * 2
+    if not lost:
+        middle = train.sampled(("U", "p_a"))[np.round(fitter.train.time * 1e3).astype(int), 1]
+        assert np.corrcoef(fitter.conditions[0][:, 2], middle)[0, 1] == pytest.approx(1.0)
 
 
 @lru_cache(maxsize=1)

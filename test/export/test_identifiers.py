@@ -22,7 +22,13 @@ def test_identifier(name: str, said: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "said"),
-    [("axis", "axis"), ("my-axis 2", "my_axis_2"), ("2nd", "machine_2nd"), ("äö", "machine_model"), ("unit", "unit_model")],
+    [
+        ("axis", "axis"),
+        ("my-axis 2", "my_axis_2"),
+        ("2nd", "machine_2nd"),
+        ("äö", "machine_model"),
+        ("unit", "unit_model"),
+    ],
 )
 def test_prefix(name: str, said: str) -> None:
     assert prefix_of(name) == said

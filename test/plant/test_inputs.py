@@ -139,6 +139,8 @@ def test_a_stepper_takes_them_beside_the_drive(sealed: Model, held: np.ndarray) 
         stepper.advance(1.0)
     with pytest.raises(UsageError, match="finite numbers are needed"):
         stepper.advance(1.0, np.inf, 1e5)
+    with pytest.raises(UsageError, match=r"inputs of shape \(10,\) do not fit 10 steps of \('U', 'p_a', 'p_b'\)"):
+        stepper.advance_in_parts(np.zeros(stepper.parts))
     stepper.advance_in_parts(np.repeat(held[20:21], stepper.parts, axis=0))
     assert stepper.state == pytest.approx(sealed.simulate(held[:21], sealed.state())[-1], rel=1e-9, abs=1e-12)
     with pytest.raises(NumericalError):

@@ -18,12 +18,12 @@ def machine_from_parameters(base: str, given: Mapping[str, Any], effects_files: 
     """
     values, files = dict(given), tuple(effects_files)
     if {EFFECTS, *FRAME} <= {name.partition(".")[0] for name in values}:
-        return _with_chambers(model_from_dict(_nested(values), "parameters", Library(files)))
+        return _simulable(model_from_dict(_nested(values), "parameters", Library(files)))
     model = load_model(base, files)
     effects = values.pop(EFFECTS, None)
     if effects is not None:
         model = model.with_effects(effects)
-    return _with_chambers(model.with_parameters(values) if values else model)
+    return _simulable(model.with_parameters(values) if values else model)
 
 
 def changed(model: Model, values: Mapping[str, Any]) -> Model:
@@ -35,12 +35,17 @@ def changed(model: Model, values: Mapping[str, Any]) -> Model:
     if effects != model.effects:
         model = model.with_effects(effects)
     new = {n: v for n, v in values.items() if n in model.parameters and v != model.parameters[n]}
-    return model.with_parameters(new) if new else model
+    return _simulable(model.with_parameters(new) if new else model)
 
 
-def _with_chambers(model: Model) -> Model:
+def _simulable(model: Model) -> Model:
     if model.force_driven:
         raise UsageError(f"{model.name} has no chambers; the simulator takes a machine file with a section 'chambers'")
+    if measured := ", ".join(model.inputs[1:]):
+        raise UsageError(
+            f"effects of {model.name} read what only a recording has ({measured}); the simulator takes a machine file "
+            "without them"
+        )
     return model
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
+from pneumo_ros.command.recordings import measuring
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.roles import add_holdout, read_roles, roles
 from pneumo_ros.errors import UsageError
@@ -50,6 +51,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     paths = roles(options, console)
     report = prepare_report(options)
     train, held, passed = read_roles(*paths, options, console, model)
+    model = measuring(model, [*train, *held], console)
     with console.progress("Adding") as progress:
         found = add(model, effects, train, held, progress=progress)
     result: dict[str, Any] = adding_dict(found)

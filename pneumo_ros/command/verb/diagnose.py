@@ -20,6 +20,7 @@ from pneumo_ros.command.arguments import add_model, add_output, add_recordings, 
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.patience import deadline, finishing
+from pneumo_ros.command.recordings import measuring
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.roles import add_holdout, read_roles, require_holdout, roles
 
@@ -64,6 +65,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
     for name in untried(model):
         console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
+    model = measuring(model, [*train, *held], console)
+    for name, topics in unseen(model, [*train, *held]).items():
+        console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
     outcome, estimates = diagnosed(model, train, held, console, end)
     experiment = suggested(outcome, options.out or options.model, console)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
@@ -99,6 +103,15 @@ def untried(model: "Model") -> list[str]:
     library = model.library
     own = sorted({*library.names()} - {*Library().names(), *model.effects})
     return [name for name in own if not coordinates(library.find(name))]
+
+
+def unseen(model: "Model", runs: "Sequence[Run]") -> dict[str, list[str]]:
+    """Effects that are not tried because a recording lacks a signal that they read, and the topics of these signals."""
+    from pneumo_ros.diagnose.hypothesis import unmeasured
+    from pneumo_ros.runs.inputs import measured_inputs
+    from pneumo_ros.runs.run import SENSORS
+
+    return {name: [SENSORS[one] for one in own] for name, own in unmeasured(model, measured_inputs(runs)).items()}
 
 
 def diagnosed(
