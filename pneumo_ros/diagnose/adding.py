@@ -14,7 +14,7 @@ from pneumo_ros.diagnose.coordinates import coordinates, starts
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import Progress, polish
-from pneumo_ros.diagnose.prediction import HORIZON, typical_error, windowed
+from pneumo_ros.diagnose.prediction import fitting_horizon, typical_error, windowed
 from pneumo_ros.diagnose.refining import refine
 from pneumo_ros.diagnose.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
@@ -57,8 +57,11 @@ def add(
     *,
     threads: int = 2,
     progress: Progress | None = None,
+    horizon: float | None = None,
 ) -> Adding:
     """Add `effects` to `model`, refit all free parameters to `train`, and predict `held`, or `train` if it is empty.
+
+    `horizon` [s]: length of the windows of these predictions; by default 1 s, or less where a run is shorter.
 
     Raises UsageError for no run, no effect, an unknown effect, an effect that the model has, and an effect that
     conflicts with its others; DataError when a run does not fit the model, or lacks a signal that an
@@ -73,7 +76,7 @@ def add(
     tell = progress or (lambda share, text: None)
     tell(0.0, "refitting the model as given")
     runs = on_one_clock([*train, *held])
-    train, held = runs[: len(train)], runs[len(train) :]
+    train, held, horizon = runs[: len(train)], runs[len(train) :], fitting_horizon(runs, horizon)
     late = lateness(model, train) if EFFECT not in effects else 0.0
     train, held = ([later(run, late) for run in runs] for runs in (train, held))
     fading = [name for name in effects if coordinates(model.library.find(name))]
@@ -91,8 +94,8 @@ def add(
     judged, compared, errors = held or train, list[Comparison](), list[float]()
     for k, one in enumerate((model, base, found.model)):
         tell(0.85 + 0.05 * k, "predicting the recordings")
-        compared.append(compare(one, judged, HORIZON))
-        errors.append(typical_error(windowed(one, judged)))
+        compared.append(compare(one, judged, horizon))
+        errors.append(typical_error(windowed(one, judged, horizon)))
     return Adding(
         tuple(effects), base, found.model, found.estimates, compared[1], compared[2], compared[0],
         (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged), late,

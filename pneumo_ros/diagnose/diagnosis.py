@@ -12,7 +12,7 @@ from pneumo_ros.diagnose.between import moved_between
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained, Value
-from pneumo_ros.diagnose.prediction import HORIZON, typical_error
+from pneumo_ros.diagnose.prediction import typical_error
 from pneumo_ros.diagnose.search import Progress, Search
 from pneumo_ros.diagnose.steps import Found, Step
 from pneumo_ros.diagnose.verdict import excess, failing, material, missed, significant, verdict
@@ -25,8 +25,13 @@ Array = NDArray[np.float64]
 RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and sensor gains are known no better
 
 
-def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None) -> Outcome:
+def diagnose(
+    model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None,
+    horizon: float | None = None,
+) -> Outcome:  # fmt: skip
     """Which effects `model` lacks: refit, rank on `train`, confirm on `held`, add, repeat.
+
+    `horizon` [s]: length of the windows in which runs are predicted; by default 1 s, or less where a run is shorter.
 
     All runs are of one machine; `held` is never fitted. Raises UsageError when either sequence is empty, DataError when
     a run does not fit the model.
@@ -36,7 +41,7 @@ def diagnose(model: Model, train: Sequence[Run], held: Sequence[Run], *, progres
             "a diagnosis needs recordings to fit and other recordings to judge by; give the latter by --holdout"
         )
     tell = progress or (lambda share, text: None)
-    search = Search(model, train, held, lambda share, text: tell(0.8 * share, text))
+    search = Search(model, train, held, lambda share, text: tell(0.8 * share, text), horizon)
     return conclude(search, search.run(), tell)
 
 
@@ -52,7 +57,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         tell(0.8 + 0.2 * k / len(models), "predicting held-out runs")
         waterfall.append((_label(models, k), typical_error(search.predicted(model))))
         if k in (1, len(models) - 1):
-            comparisons[k] = compare(model, held, HORIZON)
+            comparisons[k] = compare(model, held, search.horizon)
     values = search.fitter.deviations(found.model)
     added = tuple(
         _addition(step, found.model, values, waterfall[k + 1][1], waterfall[k + 2][1])
@@ -66,7 +71,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     return Outcome(
         verdict=verdict(added, unexplained, off),
         failing=failing(before, after, added, found.base),
-        because=f"over {HORIZON:g} s, {'; '.join(one.sentence for one in off)}" if off else "",
+        because=f"over {search.horizon:g} s, {'; '.join(one.sentence for one in off)}" if off else "",
         base=found.base,
         model=found.model,
         added=added,

@@ -10,22 +10,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.compare.verdicts import window_sizes
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.windows import predict
 
 Array = NDArray[np.float64]
 
-HORIZON = 1.0  # s
+HORIZON, SHORTER = 1.0, (0.5, 0.2, 0.1, 0.05)  # s
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
 
 
-def window_logs(model: Model, runs: Sequence[Run]) -> dict[str, Array]:
-    """By signal, the logarithm of the error over noise (windows,) in every window of 1 s."""
+def fitting_horizon(runs: Sequence[Run], wanted: float | None = None) -> float:
+    """Length [s] of the windows in which the runs are predicted: `wanted`, or 1 s, or less where a run is shorter.
+
+    Raises UsageError for a length that is not positive, or that a run does not have.
+    """
+    shortest = min(runs, key=lambda run: len(run) * run.sample_time)
+    lasts = (len(shortest) - 1) * shortest.sample_time
+    if wanted is None:
+        return next((h for h in (HORIZON, *SHORTER) if h <= 0.95 * lasts), SHORTER[-1])
+    if not 0.0 < wanted < np.inf:
+        raise UsageError(f"--horizon {wanted:g} is not a length of time; give seconds, such as --horizon 1")
+    if wanted > lasts:
+        raise UsageError(
+            f"--horizon {wanted:g} is longer than {shortest.name}, which lasts {lasts:.3g} s; give a shorter one, or "
+            "leave that recording out"
+        )
+    return wanted
+
+
+def window_logs(model: Model, runs: Sequence[Run], horizon: float = HORIZON) -> dict[str, Array]:
+    """By signal, the logarithm of the error over noise (windows,) in every window of `horizon` [s]."""
     logs: dict[str, list[Array]] = {}
     for run in runs:
         noise = run.noise
-        for name, error in predict(model, run, HORIZON).errors.items():
+        for name, error in predict(model, run, horizon).errors.items():
             logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
     return {name: np.concatenate(parts) for name, parts in logs.items()}
 
@@ -35,9 +55,9 @@ def usual_errors(logs: Mapping[str, Array]) -> dict[str, float]:
     return {name: float(np.exp(np.mean(values))) for name, values in logs.items()}
 
 
-def windowed(model: Model, runs: Sequence[Run]) -> dict[str, float]:
-    """By signal, the usual error over noise in windows of 1 s."""
-    return usual_errors(window_logs(model, runs))
+def windowed(model: Model, runs: Sequence[Run], horizon: float = HORIZON) -> dict[str, float]:
+    """By signal, the usual error over noise in windows of `horizon` [s]."""
+    return usual_errors(window_logs(model, runs, horizon))
 
 
 def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:

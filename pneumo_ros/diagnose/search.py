@@ -16,7 +16,15 @@ from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.diagnose.judging import by_score, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force
 from pneumo_ros.diagnose.polishing import polish
-from pneumo_ros.diagnose.prediction import no_worse, pays, typical_error, usual_errors, window_logs, windowed
+from pneumo_ros.diagnose.prediction import (
+    fitting_horizon,
+    no_worse,
+    pays,
+    typical_error,
+    usual_errors,
+    window_logs,
+    windowed,
+)
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist
@@ -59,18 +67,21 @@ class Search:
     """The data and settings that do not change during one search."""
 
     def __init__(
-        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None
-    ) -> None:
+        self, model: Model, train: Sequence[Run], held: Sequence[Run], progress: Progress | None = None,
+        horizon: float | None = None,
+    ) -> None:  # fmt: skip
+        """`horizon` [s]: length of the windows in which runs are predicted, as in `fitting_horizon`."""
         self.progress = progress or (lambda share, text: None)
         runs = on_one_clock([*train, *held])
         train, held = runs[: len(train)], runs[len(train) :]
+        self.horizon = fitting_horizon(runs, horizon)
         self.late = lateness(model, train)  # s
         train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
         self.paying = set[str]()  # effects below the usual size that predictions gain by
         # results are kept, as they are needed again
-        self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs))
+        self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
         self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
         self.slips = lru_cache(2)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
         self.ranking = lru_cache(1)(self._rank)
@@ -183,7 +194,7 @@ class Search:
 
     def _predicts_training(self, new: Model, old: Model) -> bool:
         """Whether one model predicts no signal of the training runs worse than another."""
-        return no_worse(windowed(old, self.train.runs), windowed(new, self.train.runs))
+        return no_worse(*(windowed(one, self.train.runs, self.horizon) for one in (old, new)))
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """The model with the effect that only breakaways and reversals show, if they need one, and the round.

@@ -31,6 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_machine_file(parser, "write the machine file with the effects", required=True)
     add_holdout(parser, "recordings to judge by; never fitted")
+    parser.add_argument(
+        "--horizon", type=float, metavar="S", help="length of predictions (default: 1 s, or shorter runs)"
+    )
     add_recordings(parser)
     add_model(parser)
     add_report(parser)
@@ -53,7 +56,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     train, held, passed = read_roles(*paths, options, console, model)
     model = measuring(model, [*train, *held], console)
     with console.progress("Adding") as progress:
-        found = add(model, effects, train, held, progress=progress)
+        found = add(model, effects, train, held, progress=progress, horizon=options.horizon)
     result: dict[str, Any] = adding_dict(found)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
     console.say(text(result))

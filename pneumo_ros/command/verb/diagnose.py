@@ -41,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --holdout, --out, how to read recordings, and the common options."""
     parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings to fit, or folders of recordings")
     add_holdout(parser, "recordings to judge by; never fitted")
+    parser.add_argument(
+        "--horizon", type=float, metavar="S", help="length of predictions (default: 1 s, or shorter runs)"
+    )
     parser.add_argument("--within", type=seconds, default=math.inf, metavar="S", help="print the best answer by then")
     add_machine_file(parser, "write the improved machine file")
     add_recordings(parser)
@@ -68,7 +71,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     model = measuring(model, [*train, *held], console)
     for name, topics in unseen(model, [*train, *held]).items():
         console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
-    outcome, estimates = diagnosed(model, train, held, console, end)
+    outcome, estimates = diagnosed(model, train, held, console, end, options.horizon)
     experiment = suggested(outcome, options.out or options.model, console)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
     result["cannot_say"] = cannot_say(outcome)
@@ -115,11 +118,16 @@ def unseen(model: "Model", runs: "Sequence[Run]") -> dict[str, list[str]]:
 
 
 def diagnosed(
-    model: "Model", train: "Sequence[Run]", held: "Sequence[Run]", console: Console, end: float = math.inf
+    model: "Model",
+    train: "Sequence[Run]",
+    held: "Sequence[Run]",
+    console: Console,
+    end: float = math.inf,
+    horizon: float | None = None,
 ) -> "tuple[Outcome, dict[str, Estimate]]":
     """The diagnosis, and what is known of every parameter after it; Ctrl-C ends the search but not its evaluation.
 
-    `end`: when the result has to be there, on the monotonic clock [s].
+    `end`: when the result has to be there, on the monotonic clock [s]; `horizon` [s] of predictions.
     """
     from pneumo_ros.diagnose.adding import estimates_along
     from pneumo_ros.diagnose.diagnosis import conclude
@@ -132,7 +140,7 @@ def diagnosed(
             progress.clear()
             console.note(f"Interrupted: {again}")
 
-        search = Search(model, train, held, lambda share, doing: progress(0.8 * share, doing))
+        search = Search(model, train, held, lambda share, doing: progress(0.8 * share, doing), horizon)
         found = search.run(deadline(search_time(search, end)))
         if found.interrupted:
             interrupted()
