@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
+from pneumo_ros.plant import load_model
 from pneumo_ros.records import read_recording, read_topics
 from pneumo_ros.tables.map_file import load_map
 
@@ -65,3 +67,13 @@ def test_servo(bags: Path) -> None:
         assert np.corrcoef(np.gradient(recording.position, recording.time), recording.velocity)[0, 1] > 0.7
         assert 4.0 < topics["/measured/supply_voltage"]["data"].mean() < 9.0
         assert len(topics["/position/reference"]) == len(recording)
+
+
+def test_every_case_of_the_table_has_a_machine_file() -> None:
+    folder = ROOT / "benchmarks" / "real"
+    cases = yaml.safe_load((folder / "table" / "cases.yaml").read_text())
+    for name, case in cases.items():
+        own = folder / "machines" / f"{name}.yaml"
+        assert load_model(str(own) if own.exists() else name).parameters
+        assert set(case) == {"fit", "judge", "horizon", "published"}
+    assert {path.stem for path in (folder / "machines").glob("*.yaml")} <= set(cases)
