@@ -1,10 +1,10 @@
 """Real machines, a row each: `python benchmarks/real/diagnose_all.py BAGS`, or PNEUMO_REAL_BAGS for BAGS.
 
-BAGS holds a folder of recordings for each machine of table/cases.yaml, as `import_all.py` writes them, or as recorded. Each
-machine is diagnosed; the table says what was found, the error of predictions of the recordings that were not fitted,
-as the machine file gives it, refitted, and with what was found, and the rms of one simulation of a whole recording from
-its first sample alone, beside what was published. A machine of your own is a folder, a machine file and an entry of
-cases.yaml.
+BAGS holds a folder of recordings for each machine of table/cases.yaml, as `import_all.py` writes them, or as recorded.
+Each machine is diagnosed; the table says what was found, the error of predictions of the recordings that were not
+fitted, as the machine file gives it, refitted, and with what was found, and the rms of one simulation of a whole
+recording from its first sample alone, beside what was published. A machine of your own is a folder, a machine file and
+an entry of table/cases.yaml.
 """
 
 import argparse

@@ -131,7 +131,8 @@ def missing(model: Model, measured: Collection[str]) -> dict[str, tuple[Coordina
     found = {}
     for name in model.library.names():
         if name not in FRAME and name not in BASE and name not in model.effects:
-            effect = coordinates(model.library.find(name))
+            kind = model.library.find(name)
+            effect = () if kind.transmission and not model.force_driven else coordinates(kind)
             if effect and _fits(model, name, measured):
                 found[name] = effect
     return found

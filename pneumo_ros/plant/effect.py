@@ -121,6 +121,7 @@ class Effect:
     functions: ClassVar[dict[str, Function]] = {}
     signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
     source: ClassVar[str] = ""
+    transmission: ClassVar[bool] = False  # a candidate only for machines that a measured force drives
     contains: ClassVar[tuple[str, ...]] = ()  # simpler effects that it equals at some of its values
 
     def __init_subclass__(cls) -> None:

@@ -42,6 +42,7 @@ _TABLE = (
         "p_b", "measured", "Pa", "0.0", "measured pressure in chamber b, absolute; a state where there are chambers"
     ),
     Signal("measured_supply", "measured", "Pa", "0.0", "measured supply pressure, absolute"),
+    Signal("imposed_velocity", "measured", "m/s", "0.0", "velocity at which a test machine moves the piston"),
     # valve
     Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
     Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),

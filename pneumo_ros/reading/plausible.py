@@ -4,10 +4,11 @@ Each mistake is corrected on trial. If that makes the residuals of the equations
 made: no missing effect does the same (the tests hide every known effect).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.errors import DataError
@@ -74,7 +75,7 @@ def _mistake(model: Model, run: Run) -> str | None:
 def _mistakes(model: Model) -> list[_Mistake]:
     """Possible mistakes in a recording of this kind of axis."""
     reversed_position = _Mistake(
-        lambda run: replace(run, position=-run.position, input=-run.input if run.imposed else run.input),
+        lambda run: replace(run, position=-run.position, further=_reversed(run.further)),
         "the position seems to count the wrong way; it grows when the rod extends",
         "reversed-position",
         "change the sign where the position is published",
@@ -151,6 +152,11 @@ def _lowest(run: Run) -> float:
 def _raised(run: Run, rise: float) -> Run:
     a, b = (None if pressure is None else pressure + rise for pressure in (run.pressure_a, run.pressure_b))
     return replace(run, pressure_a=a, pressure_b=b)
+
+
+def _reversed(further: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+    """Further inputs where the position counts the other way."""
+    return {name: -held if name == "imposed_velocity" else held for name, held in further.items()}
 
 
 def _sizes(residuals: dict[str, float]) -> str:

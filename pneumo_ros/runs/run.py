@@ -25,6 +25,7 @@ SENSORS = {  # topic of each input that is measured
     "p_a": "chamber_a/pressure",
     "p_b": "chamber_b/pressure",
     "measured_supply": "supply/pressure",
+    "imposed_velocity": "imposed motion",
 }
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
@@ -41,9 +42,8 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
-    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa]
-    imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the input is the
-    # velocity [m/s] and pressures are predicted
+    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa, m/s]
+    imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the pressures
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
 
     def __len__(self) -> int:
@@ -126,7 +126,7 @@ class Run:
 def make_run(recording: Recording, force_driven: bool | None = None, imposed: bool = False) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
-    `force_driven` None takes the recording's own kind; `imposed`: the velocity is the input, as for a model whose
+    `force_driven` None takes the recording's own kind; `imposed`: the velocity is an input, as for a model whose
     motion a test machine imposes. Where the recording says that its motion is imposed, a force-driven run predicts its
     force, that of the load cell if there is one. Raises DataError when the recording is too short, sampled too slowly,
     or lacks the input or the absolute pressures of this kind.
@@ -147,13 +147,15 @@ def make_run(recording: Recording, force_driven: bool | None = None, imposed: bo
     position = lay(recording.position)
     assert position is not None
     cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
-    if imposed:
-        held = np.repeat(np.diff(position) / step, PARTS)
+    if driven:
+        held = np.interp(cells, time, _force(recording))
     else:
-        held = np.interp(cells, time, _force(recording)) if driven else _commands_at(recording, cells)
+        held = np.zeros(len(cells)) if imposed and recording.command is None else _commands_at(recording, cells)
     pressures = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
     pressures |= {"measured_supply": recording.supply_pressure}
     further = {name: np.interp(cells, time, p) for name, p in pressures.items() if p is not None}
+    if imposed:
+        further["imposed_velocity"] = np.repeat(np.diff(position) / step, PARTS)
     return Run(
         recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
         distance < _GAP * step, driven, further, imposed or (driven and recording.imposed),

@@ -48,13 +48,17 @@ def run(seed: int, rate: float, seconds: float = 60.0) -> Run:
     b = gas(VOLUME[1] - AREA[1] * y, 4e5, rate) + 100.0 * rng.standard_normal(n + 1)
     position = y[::FINE] + 2e-5 * rng.standard_normal(n + 1)
     held = np.repeat(np.diff(position) / SAMPLE, PARTS)
-    return Run(f"spring_{seed}", SAMPLE, position, a, b, held, np.ones(n + 1, dtype=bool), False, imposed=True)
+    return Run(
+        f"spring_{seed}", SAMPLE, position, a, b, np.zeros(len(held)), np.ones(n + 1, dtype=bool), False,
+        {"imposed_velocity": held}, imposed=True,
+    )  # fmt: skip
 
 
 def test_the_motion_is_that_of_the_test_machine() -> None:
     model, one = machine(), run(1, 0.0)
-    start = model.state(y=one.position[0], v=one.input[0], p_a=5e5, p_b=4e5)
-    states = model.simulate(one.input, start, sample_time=SAMPLE, parts=PARTS)
+    held = one.inputs(model.inputs)
+    start = model.state(y=one.position[0], v=held[0, 1], p_a=5e5, p_b=4e5)
+    states = model.simulate(held, start, sample_time=SAMPLE, parts=PARTS)
     assert np.abs(states[:, 0] - one.position[1:]).max() < 2e-4
     law = states[:, 2] * (VOLUME[0] + AREA[0] * states[:, 0]) ** GAMMA
     assert np.ptp(law) < 1e-5 * law.mean()

@@ -15,7 +15,8 @@ from pneumo_ros.plant.signals import SIGNALS
 
 LIBRARY = Library()
 FRAME_EFFECTS = [LIBRARY.frame(name) for name in FRAME]
-CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names()]
+PARTS = ("imposed_motion",)  # parts of a rig that replace others of it, and fade in nowhere
+CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names() if name not in PARTS]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")
 
@@ -118,7 +119,9 @@ def lone_machine(name: str) -> Model:
 @cache
 def everything() -> Model:
     """The axis with every effect: one kernel, in which any effect can be examined alone."""
-    return AXIS.with_effects(sorted({*AXIS.effects, *LIBRARY.names()}))  # as a diagnosis orders them: one kernel
+    return AXIS.with_effects(
+        sorted({*AXIS.effects, *(effect.name for effect in CATALOGUE)})
+    )  # as a diagnosis orders them: one kernel
 
 
 @cache

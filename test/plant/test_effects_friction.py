@@ -43,6 +43,13 @@ def test_friction_rises_with_the_mean_gauge_pressure() -> None:
     assert rise == pytest.approx([0.0, 5.0, 25.0, 0.0], rel=1e-9, abs=1e-9)
 
 
+def test_friction_rises_with_the_force_that_a_transmission_passes_on() -> None:
+    """Half the sum of what pushes its two sides: 0 where a load is released as hard as it is driven."""
+    effect = effect_function(EFFECTS["load_dependent_friction"], "equations")
+    rise = [effect(drive, load, 0.4) for drive, load in ((10.0, 10.0), (10.0, 0.0), (-5.0, -15.0), (8.0, -8.0))]
+    assert rise == pytest.approx([4.0, 2.0, 4.0, 0.0])
+
+
 @pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0, 3.0])
 @pytest.mark.parametrize("speed", [0.5 * V_S, V_S, 2.0 * V_S])
 def test_stribeck_curve_falls_with_the_exponent_given(exponent: float, speed: float) -> None:

@@ -4,9 +4,9 @@ from pneumo_ros.plant.effect import Effect
 
 
 class ImposedMotion(Effect):
-    """A test machine imposes the motion: the input is the velocity [m/s] of the piston, whatever forces act on it.
+    """A test machine imposes the motion: the piston has the recorded velocity, whatever forces act on it.
 
-    For gas springs and sealed chambers on a test machine, whose pressures the motion determines. There is no valve.
+    For gas springs and cylinders on a test machine, whose pressures the motion determines.
     """
 
     source = "kinematics: y' = v with v given"
@@ -16,6 +16,6 @@ class ImposedMotion(Effect):
         added_mass = 1e9 * mass  # no force of a cylinder changes the motion of so many kg within a step
         return added_mass
 
-    def advance(v, U):
-        v = U
+    def advance(v, imposed_velocity):
+        v = imposed_velocity
         return v
