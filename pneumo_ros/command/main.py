@@ -15,6 +15,8 @@ from pneumo_ros.nearest import unknown_name
 
 VERBS = (
     "demo",
+    "parts",
+    "new",
     "import",
     "simulate",
     "identify",

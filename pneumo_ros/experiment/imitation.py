@@ -35,14 +35,14 @@ class Unknowns:
 
 def unknowns(model: Model, effect: str) -> Unknowns:
     """Free parameters when `effect`, one of the model's, imitates another: its own parameters with wide priors, the
-    others of `default_free` within 5 %.
+    others of `default_free` as its machine file states, else within 5 %.
 
     Strengths start at their neutral value, if they have one.
     """
     own = [name for name in model.parameters if name.startswith(f"{effect}.")]
     base = [name for name in default_free(model) if name not in own]
     usual = _usual(model, own)
-    rows = [(name, model[name], PRIOR * _size(model, name), 0.1) for name in base]
+    rows = [(n, model[n], model.uncertainty.get(n, PRIOR * _size(model, n)), 0.1) for n in base]
     for name in own:
         neutral = model.specification(name).neutral
         if neutral is None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.breakaway import Breakaway
-from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS, fit_flow
+from pneumo_ros.identify.flow import LIMITS, coefficients, fit_flow
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.motion import MotionFit, fit_motion
 from pneumo_ros.identify.presliding import fit_presliding
@@ -81,7 +81,7 @@ class Assembly:
     def flow(self, windows: Sequence[Window]) -> None:
         """Valve parameters from the mass balance of steady stretches."""
         fit = fit_flow(self.model, windows)
-        for name in (*COEFFICIENTS, *LIMITS):
+        for name in (*coefficients(self.model), *LIMITS):
             if name in fit.values:
                 self.note(name, fit.values[name], fit.intervals[name], "steady flow, q = p A v / (R T)")
             elif name in fit.undetermined:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.assembly import ADDED, COULOMB, DRAG, STATIC, STRIBECK, Assembly, Found
-from pneumo_ros.identify.flow import COEFFICIENTS
+from pneumo_ros.identify.flow import coefficients
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
 from pneumo_ros.identify.steady import Window, find_windows
@@ -68,7 +68,7 @@ def identify(
     tell(0.4, "fitting the motion after breakaways")
     result.motion(runs, breakaways, lambda share, text: tell(0.4 + 0.6 * share, text))
     result.map_again(points, breakaways)
-    asked = (*wanted, *COEFFICIENTS)
+    asked = (*wanted, *coefficients(model))
     unknown = {name: result.unknown[name] for name in asked if name in result.unknown}
     return Identification(
         model, result.model, result.found, unknown, result.correlations, windows, points, breakaways, result.map_fit

@@ -14,6 +14,7 @@ from pneumo_ros.plant import Model
 Array = NDArray[np.float64]
 
 COEFFICIENTS = ("arctan_flow.filling_coefficient", "arctan_flow.exhaust_coefficient")
+CHOKED = ("choked_flow.conductance_filling", "choked_flow.conductance_exhaust", "choked_flow.critical_ratio")
 LIMITS = ("dead_zone.right_limit", "dead_zone.left_limit")
 _RELATIVE = 1e-4  # of a flow: least error of a window's mass balance, as no motion is exactly steady
 _KNOWN = 0.05  # relative prior deviation of the dead zone's limits, which runs of one voltage do not determine
@@ -30,6 +31,13 @@ class FlowFit:
     undetermined: dict[str, str]
     correlation: Array  # (names, names)
     names: tuple[str, ...]
+
+
+def coefficients(model: Model) -> tuple[str, ...]:
+    """The coefficients of the valve's law of flow: those of ISO 6358 where it replaces the linear law."""
+    if model.parameters.get("choked_flow.blend") == 1.0:
+        return CHOKED
+    return tuple(name for name in COEFFICIENTS if name in model.parameters)
 
 
 def measured_flow(model: Model, window: Window) -> tuple[float, float]:
@@ -54,15 +62,15 @@ def flow_noise(model: Model, window: Window) -> tuple[float, float]:
 
 
 def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
-    """Fit both flow coefficients and, where slow voltages were used, the dead zone's limits, on the used windows.
+    """Fit the flow coefficients and, where slow voltages were used, the dead zone's limits, on the used windows.
 
     Needs the effects dead_zone and arctan_flow; without them, or with too few windows, everything is undetermined.
     """
-    names = tuple(name for name in (*COEFFICIENTS, *LIMITS) if name in model.parameters)
+    names = (*coefficients(model), *(name for name in LIMITS if name in model.parameters))
     used = [w for w in windows if w.used and w.velocity * w.input > 0.0]
     if "arctan_flow" not in model.effects or len(used) < 2 * len(names):
         text = f"{len(used)} steady stretches with an open valve are too few"
-        unknown = {name: text for name in COEFFICIENTS if name in model.parameters}
+        unknown = dict.fromkeys(coefficients(model), text)
         return FlowFit({}, {}, unknown, np.empty((0, 0)), ())
     problem = _FlowProblem(model, used, names)
     x = least_squares(problem.residuals, np.ones(len(names)), bounds=(0.2, 5.0), loss="soft_l1", f_scale=_F_SCALE).x
@@ -112,4 +120,6 @@ class _FlowProblem:
             if not (sign * self.held > 0.0).any():
                 return f"needs runs at {side} voltages"
             return f"needs runs at several small {side} voltages, the smallest just beyond the dead zone"
+        if name == CHOKED[2]:
+            return "needs runs at which a chamber is filled to nearly the supply pressure, and others with choked flow"
         return "needs runs at more voltages, including fast runs"

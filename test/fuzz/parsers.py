@@ -16,6 +16,8 @@ from fuzz.mutation import mutated
 from pneumo_ros.command.inputs import read_csv
 from pneumo_ros.control.control_file import load_control
 from pneumo_ros.experiment.programme_file import programme_text, read_programme
+from pneumo_ros.parts.listing import markdown
+from pneumo_ros.parts.shelf import read_part
 from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import Library
 from pneumo_ros.plant.machine_file import machine_text, parse_machine
@@ -98,6 +100,13 @@ def read_machine(path: Path) -> None:
     model = load_model(path)
     again = parse_machine(machine_text(model), model.name, Library())
     assert (again.effects, again.parameters) == (model.effects, model.parameters)
+
+
+def read_part_file(path: Path) -> None:
+    """A part file that loads has a source for every figure, and is shown."""
+    part = read_part(path)
+    assert all(figure.source and figure.low <= figure.value <= figure.high for figure in part.figures.values())
+    assert part.name in markdown([part])
 
 
 def read_control(path: Path) -> None:
@@ -204,6 +213,10 @@ def _npz_table() -> bytes:
     return stream.getvalue()
 
 
+PART = files("pneumo_ros.parts").joinpath("data/valves/smc-sy7000.yaml").read_bytes()
+STATED = b"    uncertainty:\n      lugre_friction: {coulomb_friction: 12.0, static_friction: 40 %}\n"
+
+
 def _shipped(name: str) -> bytes:
     return files("pneumo_ros.config").joinpath(f"{name}.yaml").read_bytes()
 
@@ -234,6 +247,8 @@ PARSERS = (
     Parser("SQLite recording", "bag.db3", read_in_order, _databases, lambda: recordings.folder_seeds()[0]),
     Parser("metadata.yaml", "bag/metadata.yaml", read_folder, _metadata, lambda: recordings.folder_seeds()[1], _mcap),
     Parser("machine file", "machine.yaml", read_machine, *_of_text(_shipped("axis"))),
+    Parser("part file", "part.yaml", read_part_file, *_of_text(PART)),
+    Parser("machine file with uncertainty", "machine.yaml", read_machine, *_of_text(_shipped("axis") + STATED)),
     Parser("control file", "control.yaml", read_control, *_of_text(_shipped("control/cascade"))),
     Parser("programme", "programme.yaml", read_trials, *_of_text(PROGRAMME.encode())),
     Parser("CSV of voltages", "input.csv", read_voltages, lambda: mutated([CSV]) | texts.CSV_FILES, lambda: CSV),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.identify.flow import COEFFICIENTS, LIMITS, FlowFit, fit_flow, flow_noise, measured_flow
+from pneumo_ros.identify.flow import CHOKED, COEFFICIENTS, LIMITS, FlowFit, fit_flow, flow_noise, measured_flow
 from pneumo_ros.identify.steady import Window, find_windows
 from pneumo_ros.plant import Model
 
@@ -94,3 +94,19 @@ def test_a_machine_without_this_valve() -> None:
     plain = truth().with_effects([effect for effect in truth().effects if effect not in ("arctan_flow", "dead_zone")])
     fit = fit_flow(plain, windows(1.0))
     assert (fit.values, fit.undetermined) == ({}, {})
+
+
+def test_the_law_of_iso_6358_has_its_own_coefficients() -> None:
+    """Where it replaces the linear law, the coefficients of that one have no influence, and are not asked for."""
+    effects = [*truth().effects, "choked_flow"]
+    true = truth().with_effects(effects, dict(zip(CHOKED, (3e-9, 3.5e-9, 0.27), strict=True)))
+    off = true.with_parameters(dict(zip(CHOKED, (2.7e-9, 3.8e-9, 0.22), strict=True)))
+    runs = [constant_run(volts, model=true) for volts in (1.0, -1.0, 2.0, -2.0, 7.0, -7.0)]
+    fit = fit_flow(off, [w for run in runs for w in find_windows(off, run)])
+    assert not set(fit.undetermined) & {*CHOKED, *COEFFICIENTS}
+    for name, within in zip(CHOKED, (0.02, 0.02, 0.1), strict=True):
+        low, high = fit.intervals[name]
+        assert fit.values[name] == pytest.approx(true[name], rel=within), name
+        assert low - 0.5 * (high - low) < true[name] < high + 0.5 * (high - low), name
+    mixed = off.with_parameters({"choked_flow.blend": 0.5})
+    assert set(fit_flow(mixed, []).undetermined) == set(COEFFICIENTS)

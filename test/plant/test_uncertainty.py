@@ -1,8 +1,12 @@
-"""Machine files that state how uncertain their values are: read, written, kept, refused where they make no sense."""
+"""Machine files that state how uncertain their values are: read, written, kept, and refused where senseless."""
 
+import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from plant.test_machine_files import NODE
 
 from pneumo_ros.axis.controller.settings import of_a_machine_file
 from pneumo_ros.axis.simulator.machine import machine_from_parameters
@@ -82,3 +86,13 @@ def test_a_share_of_nothing_is_refused(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("static_friction: 100.0", "static_friction: 0.0"))
     with pytest.raises(UsageError, match=r"a share of lugre_friction.static_friction = 0 says nothing"):
         load_model(path)
+
+
+def test_ros_reads_the_section(tmp_path: Path) -> None:
+    """Through rclpy's own parser, by dotted names."""
+    path = save_model(load_model(stated(tmp_path)), tmp_path / "saved.yaml")
+    done = subprocess.run([sys.executable, "-c", NODE, str(path)], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found[f"uncertainty.{COULOMB}"] == ["DOUBLE", 12.0]
+    assert found[f"uncertainty.{VOLUME}"] == ["DOUBLE", 3e-5]
