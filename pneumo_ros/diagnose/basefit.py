@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.hypothesis import (
     weights,
 )
 from pneumo_ros.plant import Model
+from pneumo_ros.shooting.physical import physical
 
 Array = NDArray[np.float64]
 
@@ -121,6 +122,7 @@ class _Descent:
         before = _objective(self.evidence, self.residual, offset)
         promised = _objective(self.evidence, after, offset + x) - before
         tried = [np.clip(theta + share * x * prior, self.low, self.high) for share in SHARES]
+        tried = [physical(self.model, names, values) for values in tried]
         variants = [dict(zip(names, values.tolist(), strict=True)) for values in tried]
         residual = residuals(self.evidence, self.model, variants)
         offsets = [(values - self.known.centre) / prior for values in tried]

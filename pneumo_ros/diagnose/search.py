@@ -39,6 +39,7 @@ from pneumo_ros.errors import OutOfTimeError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.physical import COULOMB, STATIC, physical
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -174,6 +175,9 @@ class Search:
             return model
         deviations = self.fitter.deviations(model)
         new = with_values_of(model, polished(*made, deviations, self.fitter.added(model), self.fitter.limits))
+        names = [name for name in (STATIC, COULOMB) if name in new.parameters]
+        values = physical(new, names, np.array([new[name] for name in names]))
+        new = new.with_parameters(dict(zip(names, values.tolist(), strict=True)))
         return new if not model.force_driven or self._predicts_training(new, model) else model
 
     def settled(self, model: Model, smaller: Model | None = None) -> Model:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import NumericalError
+from pneumo_ros.shooting.physical import physical
 from pneumo_ros.shooting.problem import Equations, Problem
 from pneumo_ros.shooting.start import fit_starts
 
@@ -113,6 +114,7 @@ class Shooting(Problem):
         """Starts, parameters and residuals after a damped step, and their cost."""
         move = self.move(theta, equations, damping)
         new_theta = np.clip(theta + move * self.unknowns.prior, self.unknowns.low, self.unknowns.high)
+        new_theta = physical(self.model, self.unknowns.names, new_theta)
         pull = equations.slope + np.einsum("spn,p->sn", equations.cross, move)
         start_move = -np.linalg.solve(equations.starts, pull[..., None])[..., 0]
         new_states = states + start_move * self.segments.scale
