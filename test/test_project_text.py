@@ -4,8 +4,11 @@ import re
 import subprocess
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+DOCS = sorted((ROOT / "docs").glob("*.md"))
 TEXT = (".py", ".md", ".rst", ".toml", ".cfg", ".xml", ".yaml", ".yml", ".txt", ".sh", ".c", "")
 # Paths of one machine, and home folders of other users
 MACHINE_PATHS = re.compile(r"(?<![\w.$})<])/(work|tmp|root|home/\w+|opt/pypi)\b")
@@ -54,9 +57,25 @@ def test_every_table_of_figures_names_the_command_that_prints_it() -> None:
             assert block.startswith("$ "), block
 
 
-def test_files_the_readme_names_exist() -> None:
-    for link in re.findall(r"\]\((?!https?:|#)([^)#]+)", README):
-        assert (ROOT / link).exists(), link
+def test_the_readme_can_be_read_in_a_minute() -> None:
+    assert len(README.encode()) < 12_000
+
+
+@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", *(f"docs/{p.name}" for p in DOCS)])
+def test_files_that_pages_name_exist(page: str) -> None:
+    for link in re.findall(r"\]\((?!https?:|#)([^)#]+)", (ROOT / page).read_text(encoding="utf-8")):
+        assert (ROOT / page).parent.joinpath(link).exists(), link
+
+
+def test_every_page_is_reached_from_the_readme() -> None:
+    seen, left = set(), ["README.md"]
+    while left:
+        page = left.pop()
+        links = re.findall(r"\]\((?!https?:|#)([^)#]+\.md)", (ROOT / page).read_text(encoding="utf-8"))
+        new = {str((ROOT / page).parent.joinpath(link).resolve().relative_to(ROOT)) for link in links} - seen
+        seen |= new
+        left += sorted(new)
+    assert {f"docs/{p.name}" for p in DOCS} <= seen
 
 
 def test_verbs_the_readme_shows_exist() -> None:
