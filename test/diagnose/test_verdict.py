@@ -27,7 +27,7 @@ def compared(typical: float = 1.0, **left: tuple[float, float]) -> Comparison:
     flows = {f"port_flow_{chamber}": np.array([FLOW, -FLOW]) for chamber in "ab"}
     seen = {"drive": np.array([FORCE, -FORCE]) + 7.0, "force": np.array([7.0, 7.0]), **flows}
     position = SWING * np.sin(0.5 * np.pi * 0.01 * np.arange(2000))
-    motion = SimpleNamespace(seen=seen, run=SimpleNamespace(signals={"position_m": position}, sample_time=0.01))
+    motion = SimpleNamespace(seen=seen, run=SimpleNamespace(judged={"position_m": position}, sample_time=0.01))
     error = {"position_m": SignalError(typical * NOISE, 1.0, 99.0, NOISE, typical)}
     equations = {
         name: EquationVerdict(rms, "N" if name == "momentum" else "kg/s", ratio, ratio <= 1.1)
