@@ -39,7 +39,8 @@ def read_options(options: argparse.Namespace) -> "ReadOptions":
     from pneumo_ros.reading.read import ReadOptions
     from pneumo_ros.records.corrections import parse_words
 
-    return ReadOptions(options.namespace, options.joint, parse_words(options.read_as))
+    mechanics = getattr(options, "mechanics", False)  # a default of the verbs that can judge them alone
+    return ReadOptions(options.namespace, options.joint, parse_words(options.read_as), mechanics)
 
 
 def _cuts(options: argparse.Namespace) -> "dict[Path, tuple[Cut, ...]]":
@@ -62,11 +63,16 @@ def read_one(path: str, options: argparse.Namespace, console: Console, model: "M
 
 
 def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model":
-    """The model with the recorded supply pressure in place of its constant, where every run has it; a note says so."""
+    """The model as `inputs.measuring` says, for what the runs hold; notes say what is different."""
     from pneumo_ros.runs import inputs
 
     found = inputs.measuring(model, runs)
-    if found.inputs != model.inputs:
+    if found.force_driven != model.force_driven:
+        console.note(
+            "No recording has a valve command: friction and load are judged, driven by the measured pressures; "
+            "record valve/command to judge valve and chambers as well"
+        )
+    elif found.inputs != model.inputs:
         taken = "measured, in place of" if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
         console.note(f"The supply pressure is {taken} air.supply_pressure")
     return found

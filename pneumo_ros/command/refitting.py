@@ -26,12 +26,14 @@ def refitted(
     options: argparse.Namespace, console: Console, model: "Model", runs: "list[Run]"
 ) -> "tuple[Model, dict[str, Any] | None]":
     """The model as the options want it, and the JSON of its refit; UsageError for --out without a refit."""
+    given, model = model, measuring(model, runs, console)
     if not (options.refit or options.fit):
         if options.out:
             raise UsageError("--out writes the refitted machine file; add --refit, or --fit BAG...")
         return model, None
     from pneumo_ros.compare.moved import refit_dict
     from pneumo_ros.plant import save_model
+    from pneumo_ros.plant.mechanical import whole
     from pneumo_ros.shooting.refit import refit
 
     if options.out:
@@ -41,7 +43,7 @@ def refitted(
     with console.progress("Refitting") as progress:
         found = refit(model, used, progress=lambda share, _: progress(share))
     if options.out:
-        save_model(found.model, options.out)
+        save_model(whole(given, found.model), options.out)
         console.note(f"Refitted machine written to {options.out}")
     return found.model, refit_dict(found, [one.name for one in used])
 

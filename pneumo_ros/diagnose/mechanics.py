@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.guess import measured_frame
-from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.sensors import corrected
@@ -23,39 +22,6 @@ LENGTH = 0.3  # s
 MOST_EVENTS = 40  # segments: more take longer, and change friction by less than its deviation
 _SLOW, _MOVED = 0.004, 3e-4  # m/s and m: the slowest speed of an event is smaller, its travel is larger
 _LAG = 0.025  # s
-
-
-def mechanical(model: Model) -> Model | None:
-    """The model without valve and chambers, driven by a force; None where its mechanics need the valve or the gas."""
-    if model.force_driven:
-        return model
-    kept: list[str] = []
-    for name in model.effects:
-        try:
-            Model.build(
-                [*kept, name], {}, library=model.library, frame=("piston", "air"), name=model.name, defaults=True
-            )
-        except PneumoError:
-            if moves(model, name):
-                return None
-            continue
-        if moves(model, name):
-            kept.append(name)
-    values = {k: v for k, v in model.parameters.items() if k.partition(".")[0] in (*kept, "piston", "air")}
-    stated = {k: v for k, v in model.uncertainty.items() if k in values}
-    return Model.build(
-        kept, values, library=model.library, frame=("piston", "air"), name=model.name, uncertainty=stated
-    )
-
-
-def moves(model: Model, name: str) -> bool:
-    """Whether an effect acts on the piston or on its position sensor."""
-    mechanics = {
-        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_scale", "static_rise", "slip",
-        "stribeck", "y_measured", "resistance",
-    }  # fmt: skip
-    functions = model.library.find(name).functions.values()
-    return any(signal in mechanics for function in functions for signal in function.writes)
 
 
 def moving_mass(model: Model) -> float:

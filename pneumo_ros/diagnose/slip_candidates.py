@@ -13,12 +13,12 @@ from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
-from pneumo_ros.diagnose.mechanics import moves
 from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
 from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, with_values_of
 from pneumo_ros.diagnose.steps import Step
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import moves
 from pneumo_ros.shooting.refit import refit_segments
 
 Array = NDArray[np.float64]

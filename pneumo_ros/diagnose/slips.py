@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events, mechanical
+from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import mechanical
 from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.problem import NOISE_TAIL

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import mechanical
 from pneumo_ros.reading.plausible import check_run
 from pneumo_ros.records import Recording, read_recording
 from pneumo_ros.records.corrections import corrected
@@ -24,6 +25,7 @@ class ReadOptions:
     namespace: str | None = None
     joint: str | None = None
     words: tuple[str, ...] = ()  # of `records.corrections.WORDS`
+    mechanics: bool = False  # whether pressures without a valve command suffice, to judge the mechanics alone
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,9 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 
     Raises DataError when it lacks a signal that `model` needs, or is not plausible (see `check_run`).
     """
-    run, notes = _trusted(recording, model, without(make_run(recording, model.force_driven, model.imposed), cuts))
+    areas = (model["piston.area_a"], model["piston.area_b"])
+    whole = make_run(recording, model.force_driven, model.imposed, areas)
+    run, notes = _trusted(recording, model, without(whole, cuts))
     check_inputs(model, run)
     return run, [f"{note}." for note in (*notes, *check_run(model, run))]
 
@@ -69,19 +73,24 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 def _trusted(recording: Recording, model: Model, run: Run) -> tuple[Run, list[str]]:
     """The run without measured inputs that are not plausible, and a note on each; DataError if `model` reads them."""
     chambers, notes = ("p_a", "p_b") if model.force_driven else (), list[str]()
+    needed = {*model.inputs, *(chambers if recording.pressures_drive else ())}
     for names, check, what in (
-        (chambers, check_pressures, "its pressures are not used, and no effect of them is tried"),
+        (chambers, _check_oil, "its pressures are not used, and no effect of them is tried"),
         (("measured_supply",), check_supply, "its supply pressure is not used"),
     ):
         try:
             if set(names) & set(run.further):
                 check(recording)
         except DataError as problem:
-            if set(model.inputs) & set(names):
+            if needed & set(names):
                 raise
             run = replace(run, further={name: held for name, held in run.further.items() if name not in names})
             notes.append(f"{what}: {problem}")
     return run, notes
+
+
+def _check_oil(recording: Recording) -> None:
+    check_pressures(recording, oil=True)
 
 
 def read_run(path: str | Path, model: Model, options: ReadOptions | None = None, cuts: Sequence[Cut] = ()) -> Reading:
@@ -89,10 +98,17 @@ def read_run(path: str | Path, model: Model, options: ReadOptions | None = None,
 
     Raises DataError when it cannot be read, lacks a signal that `model` needs, or is not plausible.
     """
-    atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
-    recording = corrected_recording(path, options or ReadOptions(), atmosphere)
-    run, notes = checked_run(recording, model, cuts)
+    how = options or ReadOptions()
+    recording = corrected_recording(path, how, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
+    run, notes = checked_run(recording, _judging(model, recording, how), cuts)
     return Reading(recording, run, (*recording.warnings, *notes))
+
+
+def _judging(model: Model, recording: Recording, how: ReadOptions) -> Model:
+    """The model, or its mechanics alone where `how` allows them and the recording has no valve command."""
+    commanded = recording.voltage is not None or not recording.pressures_drive
+    alone = how.mechanics and not (commanded or model.force_driven or model.imposed)
+    return (mechanical(model) or model) if alone else model
 
 
 def read_runs(

@@ -8,8 +8,8 @@ from pneumo_ros.records import contract
 
 NEEDED = (
     f"{contract.JOINT_STATES}, {contract.PRESSURE_A}, {contract.PRESSURE_B} and {contract.COMMAND}, "
-    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force, or with pressures or "
-    f"{contract.LOAD_CELL} for an imposed motion"
+    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force, with both pressures to judge "
+    f"friction and load alone, or with pressures or {contract.LOAD_CELL} for an imposed motion"
 )
 
 

@@ -54,8 +54,9 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
 
 
 def _require(signals: Signals, commands: Series | None, *pressures: Series | None) -> None:
-    """Raises DataError unless this is a valve-driven axis with pressures, or a force-driven one."""
-    if commands is None and not np.isfinite(signals.joints.values["effort"]).all():
+    """Raises DataError unless this is a valve-driven axis with pressures, or one driven by a force or by pressures."""
+    measured = None not in pressures and not signals.like(contract.COMMAND)  # else its command has another name
+    if commands is None and not measured and not np.isfinite(signals.joints.values["effort"]).all():
         absent, lacking = [contract.COMMAND], f"{contract.COMMAND} or the effort in {contract.JOINT_STATES}"
     elif commands is not None and None in pressures:
         names = (contract.PRESSURE_A, contract.PRESSURE_B)

@@ -52,6 +52,12 @@ class Recording:
         return self.voltage is None and self.effort is not None
 
     @property
+    def pressures_drive(self) -> bool:
+        """Whether the two chamber pressures are all that tell its drive: no effort, no imposed motion."""
+        alone = self.effort is None and not self.imposed
+        return alone and self.pressure_a is not None and self.pressure_b is not None
+
+    @property
     def imposed(self) -> bool:
         """Whether a test machine imposed the motion, as the map of an imported table says."""
         return imposed(self.description)

@@ -8,6 +8,7 @@ from pneumo_ros.records.recording import Array, Recording
 
 _FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
 _VACUUM, _MOST = 1e4, 1e7  # Pa: lowest and highest pressure in a chamber of a pneumatic axis
+_OIL = 1e8  # Pa: highest pressure where the fluid is not modelled: that of a hydraulic cylinder
 _USUAL = 5e4  # Pa: the pressures of a running axis reach it, gauge or absolute
 _ABOVE_SUPPLY = 1.1  # times the supply pressure: most that a chamber reaches for long
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
@@ -35,24 +36,28 @@ def check_use(recording: Recording, force_driven: bool, imposed: bool = False) -
             "the section 'chambers', and the recording chamber_a/pressure and chamber_b/pressure"
         )
     if force_driven and recording.effort is None and not (recording.imposed and recording.load_cell is not None):
-        raise DataError(f"{recording.name} has no effort; a model without chambers is driven by a measured force")
+        raise DataError(
+            f"{recording.name} has no effort and not both chamber pressures; a model without chambers is driven by a "
+            "measured force or by the pressures on its piston"
+        )
     if not (force_driven or imposed) and (
         recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None
     ):
         raise DataError(
             f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
-            "For an axis driven by a measured force give --model a machine file without the section 'chambers'."
+            "To judge friction and load alone, by a measured force or by the pressures on the piston, give --model a "
+            "machine file without the section 'chambers'."
         )
     if not force_driven:
         check_pressures(recording)
 
 
-def check_pressures(recording: Recording) -> None:
-    """Raises DataError for chamber pressures that are not in the range of absolute pressures in Pa."""
+def check_pressures(recording: Recording, oil: bool = False) -> None:
+    """Raises DataError for chamber pressures outside the range of absolute pressures in Pa, of gas or `oil`."""
     pressures = {"chamber_a/pressure": recording.pressure_a, "chamber_b/pressure": recording.pressure_b}
     given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
     for topic, pressure in given.items():
-        _check_size(recording, topic, pressure, list(given.values()))
+        _check_size(recording, topic, pressure, list(given.values()), _OIL if oil else _MOST)
 
 
 def check_supply(recording: Recording) -> None:
@@ -79,16 +84,17 @@ def _check_time(recording: Recording) -> None:
         )
 
 
-def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Array]) -> None:
+def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Array], most: float = _MOST) -> None:
     """Raises DataError unless `pressure` is in the range of absolute pressures in Pa; the advice depends on `both`."""
     lowest, highest = float(pressure.min()), float(pressure.max())
-    if lowest >= _VACUUM and highest <= _MOST:
+    if lowest >= _VACUUM and highest <= most:
         return
     at = recording.time[int(np.argmin(pressure) if lowest < _VACUUM else np.argmax(pressure))]
     span = f"{recording.name}: {topic} is {lowest:.4g} to {highest:.4g}"
     wanted = "absolute pressures in Pa are needed"
-    if highest > _MOST:
-        raise DataError(f"{span} Pa, more than a pneumatic axis has; {wanted}: check the unit, and --read-as if given")
+    if highest > most:
+        kind = "a pneumatic axis has" if most == _MOST else "a hydraulic one has"
+        raise DataError(f"{span} Pa, more than {kind}; {wanted}: check the unit, and --read-as if given")
     if lowest == highest or (np.mean(pressure < 0.0) > 0.2 and highest < _VACUUM):
         raise DataError(f"{span} in {len(pressure)} samples: its sensor gives no signal; look at its plug and supply")
     if highest < _USUAL:

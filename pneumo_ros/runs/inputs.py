@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import mechanical
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import SENSORS, Run
 
@@ -16,7 +17,18 @@ def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
 
 
 def measuring(model: Model, runs: Sequence[Run]) -> Model:
-    """The model with the recorded supply pressure in place of its constant, where every run has it."""
+    """The model with the recorded supply pressure in place of its constant, where every run has it.
+
+    Its mechanics alone, where no run has a valve command; DataError where some have one.
+    """
+    alone = [run for run in runs if run.force_driven]
+    if alone and not model.force_driven:
+        if commanded := [run.name for run in runs if not run.force_driven]:
+            raise DataError(
+                f"{alone[0].name} has no valve command, {commanded[0]} has one; give recordings of one kind, or a "
+                "machine file without the section 'chambers', to judge friction and load alone in all of them"
+            )
+        model = mechanical(model) or model
     return model.measuring([name for name in IN_PLACE if name in measured_inputs(runs)])
 
 

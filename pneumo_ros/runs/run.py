@@ -1,7 +1,7 @@
 """A recording laid on a uniform time grid, as the integrator and the estimators need it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -123,16 +123,25 @@ class Run:
         return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
 
 
-def make_run(recording: Recording, force_driven: bool | None = None, imposed: bool = False) -> Run:
+def make_run(
+    recording: Recording,
+    force_driven: bool | None = None,
+    imposed: bool = False,
+    areas: tuple[float, float] | None = None,
+) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
     `force_driven` None takes the recording's own kind; `imposed`: the velocity is an input, as for a model whose
     motion a test machine imposes. Where the recording says that its motion is imposed, a force-driven run predicts its
-    force, that of the load cell if there is one. Raises DataError when the recording is too short, sampled too slowly,
-    or lacks the input or the absolute pressures of this kind.
+    force, that of the load cell if there is one. With piston `areas` [m2] of the chambers a and b, the pressures drive
+    a force-driven run that has no effort. Raises DataError when the recording is too short, sampled too slowly, or
+    lacks the input or the absolute pressures of this kind.
     """
     time = recording.time
     driven = recording.force_driven if force_driven is None else force_driven
+    if driven and areas and recording.pressures_drive:
+        thrust = areas[0] * _array(recording.pressure_a) - areas[1] * _array(recording.pressure_b)
+        recording = replace(recording, effort=thrust)
     check_use(recording, driven, imposed)
     counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
     intervals = int(counts.sum())

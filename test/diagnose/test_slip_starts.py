@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, mechanical
+from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
 from pneumo_ros.diagnose.slips import Slips, friction_priors
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import mechanical
 
 HIDDEN = {"stribeck_shape.exponent": 1.8}
 VOLTAGES = (0.83, -0.83, 1.0, -1.0, 2.0, -2.0)

@@ -57,13 +57,18 @@ def test_a_force_driven_axis(tmp_path: Path) -> None:
     np.testing.assert_array_equal(recording.effort, SIGNALS["effort"])
 
 
+def test_pressures_alone_tell_the_drive(tmp_path: Path) -> None:
+    content = streams()
+    del content[COMMAND]
+    assert read_recording(write(tmp_path / "run", content)).pressures_drive
+
+
 @pytest.mark.parametrize(
     ("lost", "said"),
-    [(PRESSURE_A, PRESSURE_A), (COMMAND, "effort in joint_states"), (JOINT_STATES, "joint_states is missing")],
+    [((PRESSURE_A,), PRESSURE_A), ((COMMAND, PRESSURE_A), "effort in joint_states"), ((JOINT_STATES,), "is missing")],
 )
-def test_what_is_missing_is_named(tmp_path: Path, lost: str, said: str) -> None:
-    content = streams()
-    del content[lost]
+def test_what_is_missing_is_named(tmp_path: Path, lost: tuple[str, ...], said: str) -> None:
+    content = {name: stream for name, stream in streams().items() if name not in lost}
     path = write(tmp_path / "run", content, "/axis")
     with pytest.raises(DataError, match=said) as caught:
         read_recording(path)

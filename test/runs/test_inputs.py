@@ -1,19 +1,21 @@
 """Measured inputs of a force-driven run: laid on the grid, kept through cuts and shifts, asked for by models."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from identify.making import recording
 
-from pneumo_ros.diagnose.mechanics import driven_by_pressures, mechanical
+from pneumo_ros.diagnose.mechanics import driven_by_pressures
 from pneumo_ros.diagnose.stretches import stretch
 from pneumo_ros.diagnose.timing import later
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import load_model
-from pneumo_ros.reading.read import checked_run
-from pneumo_ros.records import Recording
-from pneumo_ros.runs.inputs import check_inputs, measured_inputs
+from pneumo_ros.plant.mechanical import mechanical, whole
+from pneumo_ros.reading.read import ReadOptions, checked_run, read_run
+from pneumo_ros.records import Recording, write_recording
+from pneumo_ros.runs.inputs import check_inputs, measured_inputs, measuring
 from pneumo_ros.runs.run import PARTS, Run, make_run
 
 N = 3000
@@ -91,6 +93,55 @@ def test_pressures_may_be_constant_where_a_force_moves_the_piston() -> None:
     run, notes = checked_run(force_driven(pressure_a=np.full(N, 5e5), pressure_b=np.full(N, 1e5)), SEALED)
     assert not notes
     assert (run.inputs(NAMES)[:, 1:] == [5e5, 1e5]).all()
+
+
+def test_pressures_alone_push_the_piston() -> None:
+    run, _ = checked_run(force_driven(effort=None), SEALED)
+    inputs = run.inputs(NAMES)
+    areas = SEALED["piston.area_a"], SEALED["piston.area_b"]
+    assert inputs[:, 0] == pytest.approx(areas[0] * inputs[:, 1] - areas[1] * inputs[:, 2], rel=1e-9)
+    with pytest.raises(DataError, match="has no effort and not both chamber pressures"):
+        checked_run(force_driven(effort=None, pressure_b=None), SEALED)
+
+
+def test_pressures_of_oil_are_taken_where_they_drive() -> None:
+    oil = {"pressure_a": 8e6 + 4e6 * np.sin(3.0 * TIME), "pressure_b": 6e6 - 4e6 * np.cos(3.0 * TIME)}
+    run, notes = checked_run(force_driven(effort=None, **oil), EMPS)
+    assert not notes
+    assert run.further["p_a"].max() == pytest.approx(12e6, rel=1e-3)
+    with pytest.raises(DataError, match="more than a hydraulic one has"):
+        checked_run(force_driven(effort=None, pressure_a=np.full(N, 2e8), pressure_b=oil["pressure_b"]), EMPS)
+
+
+def test_a_bag_without_a_valve_command_judges_the_mechanics_alone(tmp_path: Path) -> None:
+    signals = force_driven()
+    path = tmp_path / "cylinder"
+    write_recording(
+        path, time=TIME, position=signals.position, pressure_a=signals.pressure_a, pressure_b=signals.pressure_b
+    )
+    axis = load_model("axis")
+    with pytest.raises(DataError, match="no valve command"):
+        read_run(path, axis)
+    run = read_run(path, axis, ReadOptions(mechanics=True)).run
+    judged = measuring(axis, [run])
+    assert judged.force_driven
+    assert set(judged.effects) < set(axis.effects)
+    commanded = replace(run, name="valve", force_driven=False)
+    with pytest.raises(DataError, match="cylinder has no valve command, valve has one"):
+        measuring(axis, [run, commanded])
+
+
+def test_what_was_found_in_the_mechanics_goes_back_into_the_machine() -> None:
+    axis = load_model("axis")
+    part = mechanical(axis)
+    assert part is not None
+    slower = part.with_effects([*part.effects, "asymmetric_viscous_friction"]).with_parameters({"piston.mass": 7.0})
+    again = whole(axis, slower)
+    assert again.effects == (*axis.effects, "asymmetric_viscous_friction")
+    assert again["piston.mass"] == 7.0
+    chambers = {k: v for k, v in axis.parameters.items() if k.startswith("chambers.")}
+    assert chambers.items() <= again.parameters.items()
+    assert whole(EMPS, EMPS) is EMPS
 
 
 def test_the_mechanics_of_a_machine_with_chambers_read_its_pressures() -> None:

@@ -38,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_report(parser)
     add_output(parser)
+    parser.set_defaults(mechanics=True)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
@@ -46,6 +47,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.command.adding_text import text
     from pneumo_ros.diagnose.adding import add, check_addable
     from pneumo_ros.plant import save_model
+    from pneumo_ros.plant.mechanical import whole
 
     check_machine_file(options)
     model = chosen_model(options)
@@ -54,13 +56,13 @@ def run(options: argparse.Namespace, console: Console) -> int:
     paths = roles(options, console)
     report = prepare_report(options)
     train, held, passed = read_roles(*paths, options, console, model)
-    model = measuring(model, [*train, *held], console)
+    given, model = model, measuring(model, [*train, *held], console)
     with console.progress("Adding") as progress:
         found = add(model, effects, train, held, progress=progress, horizon=options.horizon)
     result: dict[str, Any] = adding_dict(found)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
     console.say(text(result))
-    save_model(found.model, options.out, overwrite=options.overwrite)
+    save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
     console.note(f"Machine file written to {options.out}")
     console.json(result)
     report.publish(console, lambda origin: _report(found, result, origin))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, plain
-from pneumo_ros.command.recordings import measuring, read_named
+from pneumo_ros.command.recordings import read_named
 from pneumo_ros.command.refitting import add_refit, refit_text, refitted
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.compare.findings import findings, verdict
@@ -37,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_report(parser)
     parser.add_argument("--series", metavar="FILE.npz", help="write measured and predicted signals as numpy arrays")
     add_output(parser)
+    parser.set_defaults(mechanics=True)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
@@ -50,7 +51,6 @@ def run(options: argparse.Namespace, console: Console) -> int:
         check_writable(options.series)
     model = chosen_model(options)
     runs = read_named(options.bags, options, console, model)
-    model = measuring(model, runs, console)
     model, refit = refitted(options, console, model, runs)
     with console.progress("Comparing") as progress:
         comparison = compare(model, runs, options.horizon, lambda share, _: progress(share))

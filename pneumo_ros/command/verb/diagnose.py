@@ -50,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_report(parser)
     add_output(parser)
+    parser.set_defaults(mechanics=True)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
@@ -59,6 +60,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.command.diagnosis_text import text
     from pneumo_ros.command.suggesting import cannot_say, suggested
     from pneumo_ros.plant import save_model
+    from pneumo_ros.plant.mechanical import whole
 
     check_machine_file(options)
     require_holdout(options, "diagnose", console)
@@ -68,7 +70,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     for name in untried(model):
         console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
-    model = measuring(model, [*train, *held], console)
+    given, model = model, measuring(model, [*train, *held], console)
     for name, topics in unseen(model, [*train, *held]).items():
         console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
     outcome, estimates = diagnosed(model, train, held, console, end, options.horizon)
@@ -78,7 +80,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
     console.say(text(result))
     if options.out:
-        save_model(outcome.model, options.out, overwrite=options.overwrite)
+        save_model(whole(given, outcome.model), options.out, overwrite=options.overwrite)
         console.note(f"{_what(outcome)} written to {options.out}; see also: {_next(options)}")
     console.json(result)
     report.publish(console, lambda origin: _report(outcome, result, origin))
