@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import pytest
 
 from pneumo_ros.environment import Domain
@@ -36,6 +37,12 @@ LONGEST = (
 # A script's `make test &`, nohup and cron let their children ignore SIGINT: tests that send one would wait for ever.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# A busy machine is slow to draw values, and to try them; that is no fault of a test.
+hypothesis.settings.register_profile(
+    "busy", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], database=None
+)
+hypothesis.settings.load_profile("busy")
 
 # Before anything imports rclpy: nodes of this process, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()

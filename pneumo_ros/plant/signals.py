@@ -43,6 +43,7 @@ _TABLE = (
     ),
     Signal("measured_supply", "measured", "Pa", "0.0", "measured supply pressure, absolute"),
     Signal("imposed_velocity", "measured", "m/s", "0.0", "velocity at which a test machine moves the piston"),
+    Signal("load_force", "measured", "N", "0.0", "measured rod force, positive where positive positions are"),
     # valve
     Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
     Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),

@@ -156,7 +156,7 @@ def _raised(run: Run, rise: float) -> Run:
 
 def _reversed(further: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Further inputs where the position counts the other way."""
-    return {name: -held if name == "imposed_velocity" else held for name, held in further.items()}
+    return {name: -held if name in ("imposed_velocity", "load_force") else held for name, held in further.items()}
 
 
 def _sizes(residuals: dict[str, float]) -> str:

@@ -26,6 +26,7 @@ SENSORS = {  # topic of each input that is measured
     "p_b": "chamber_b/pressure",
     "measured_supply": "supply/pressure",
     "imposed_velocity": "imposed motion",
+    "load_force": "load_cell",
 }
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 
@@ -42,7 +43,7 @@ class Run:
     input: Array  # ((n - 1) * PARTS,) valve voltage [V], or driving force [N], held over tenths of a sample
     measured: NDArray[np.bool_]  # false inside gaps
     force_driven: bool
-    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa, m/s]
+    further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa, m/s, N]
     imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the pressures
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
 
@@ -160,9 +161,10 @@ def make_run(
         held = np.interp(cells, time, _force(recording))
     else:
         held = np.zeros(len(cells)) if imposed and recording.command is None else _commands_at(recording, cells)
-    pressures = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
-    pressures |= {"measured_supply": recording.supply_pressure}
-    further = {name: np.interp(cells, time, p) for name, p in pressures.items() if p is not None}
+    measured = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
+    load = None if driven and recording.imposed else recording.load_cell  # there it is the force that is predicted
+    measured |= {"measured_supply": recording.supply_pressure, "load_force": load}
+    further = {name: np.interp(cells, time, signal) for name, signal in measured.items() if signal is not None}
     if imposed:
         further["imposed_velocity"] = np.repeat(np.diff(position) / step, PARTS)
     return Run(

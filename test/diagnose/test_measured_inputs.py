@@ -24,6 +24,7 @@ from pneumo_ros.runs.run import PARTS, Run, make_run
 
 EFFECT = "pressure_dependent_friction"
 RISE, FORCE_NOISE, SAMPLES = 8e-5, 0.3, 12_000  # N/Pa, N, of each run
+NO_CELL = {"measured_load": ("load_force",)}
 NAMES = ("train_steps", "train_slow", "holdout_steps")
 
 
@@ -107,13 +108,31 @@ def test_an_effect_of_ones_own_needs_only_the_sensor_that_it_reads(tmp_path: Pat
     assert "seal_of_a" not in missing(model, measured_inputs([*given, blind(given[0], "p_a")]))
 
 
+def opposed(truth: Model, phase: float) -> Run:
+    """The rod pushed to and fro against another one, with a load cell between them that counts pushes as pulls."""
+    n = 6001
+    t = (np.arange((n - 1) * PARTS) + 0.5) * 1e-3 / PARTS
+    force = 180.0 * np.sin(np.pi * t + phase) + 40.0 * np.sin(8.0 * t)
+    cell = 60.0 * np.sin(4.3 * t + 2.0 * phase) + 5.0
+    states = truth.simulate(np.column_stack([force, cell]), truth.state(), parts=PARTS)
+    y = np.append(0.0, states[:, 0]) + np.random.default_rng(2).normal(0.0, POSITION_NOISE, n)
+    return Run(f"run {phase}", 1e-3, y, None, None, force, np.ones(n, dtype=bool), True, {"load_force": cell})
+
+
+def test_a_load_that_a_load_cell_measures_is_no_friction() -> None:
+    truth = rod().with_effects([*rod().effects, "measured_load"], {"measured_load.gain": -1.0})
+    best = ranked(rod(), [opposed(truth, phase) for phase in (0.0, 1.0, 2.0)])[0]
+    assert best.name == "measured_load"
+    assert best.values["measured_load.gain"] == pytest.approx(-1.0, rel=0.02)
+
+
 @pytest.mark.parametrize("lost", [("p_a",), ("p_b",), ("p_a", "p_b")])
 def test_without_both_pressures_it_is_not_offered(lost: tuple[str, ...]) -> None:
     offered = missing(rod(), measured_inputs([runs()[0], blind(runs()[1], *lost)]))
     assert EFFECT not in offered
     assert set(missing(rod(), measured_inputs(runs()))) - set(offered) == {EFFECT}
-    assert unmeasured(rod(), measured_inputs([blind(runs()[1], *lost)])) == {EFFECT: lost}
-    assert unmeasured(rod(), measured_inputs(runs())) == {}
+    assert unmeasured(rod(), measured_inputs([blind(runs()[1], *lost)])) == {EFFECT: lost, **NO_CELL}
+    assert unmeasured(rod(), measured_inputs(runs())) == NO_CELL
     with pytest.raises(DataError, match=f"effect {EFFECT} of 'rod' reads as {' and '.join(lost)}; record also chamber"):
         add(rod(), [EFFECT], [runs()[0]], [blind(runs()[1], *lost)])
 

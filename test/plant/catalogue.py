@@ -15,7 +15,7 @@ from pneumo_ros.plant.signals import SIGNALS
 
 LIBRARY = Library()
 FRAME_EFFECTS = [LIBRARY.frame(name) for name in FRAME]
-PARTS = ("imposed_motion",)  # parts of a rig that replace others of it, and fade in nowhere
+PARTS = ("imposed_motion", "measured_load")  # they read what a simulation of the axis alone does not have
 CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names() if name not in PARTS]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")

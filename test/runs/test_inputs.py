@@ -104,6 +104,14 @@ def test_pressures_alone_push_the_piston() -> None:
         checked_run(force_driven(effort=None, pressure_b=None), SEALED)
 
 
+def test_a_load_cell_is_an_input_where_it_is_not_the_force_that_is_predicted() -> None:
+    cell = 30.0 * np.sin(5.0 * TIME)
+    run = make_run(force_driven(load_cell=cell))
+    assert run.inputs(("U", "load_force"))[5::PARTS, 1] == pytest.approx(cell[:-1], abs=0.1)
+    imposed = force_driven(load_cell=cell, effort=None, description={"map": {"motion": "imposed"}})
+    assert "load_force" not in make_run(imposed, force_driven=True).further
+
+
 def test_pressures_of_oil_are_taken_where_they_drive() -> None:
     oil = {"pressure_a": 8e6 + 4e6 * np.sin(3.0 * TIME), "pressure_b": 6e6 - 4e6 * np.cos(3.0 * TIME)}
     run, notes = checked_run(force_driven(effort=None, **oil), EMPS)

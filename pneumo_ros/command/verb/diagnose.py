@@ -111,12 +111,17 @@ def untried(model: "Model") -> list[str]:
 
 
 def unseen(model: "Model", runs: "Sequence[Run]") -> dict[str, list[str]]:
-    """Effects that are not tried because a recording lacks a signal that they read, and the topics of these signals."""
+    """Effects that are not tried because a recording lacks a signal that they read, and the topics of these signals.
+
+    An effect of a load cell is not named where no recording has one: most machines have none.
+    """
     from pneumo_ros.diagnose.hypothesis import unmeasured
     from pneumo_ros.runs.inputs import measured_inputs
     from pneumo_ros.runs.run import SENSORS
 
-    return {name: [SENSORS[one] for one in own] for name, own in unmeasured(model, measured_inputs(runs)).items()}
+    lacking = unmeasured(model, measured_inputs(runs)).items()
+    some = {name for run in runs for name in run.further}
+    return {name: [SENSORS[one] for one in own] for name, own in lacking if own != ("load_force",) or {*own} <= some}
 
 
 def diagnosed(
