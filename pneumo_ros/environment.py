@@ -40,8 +40,9 @@ LIBRARIES = {
     "rich": ("rich", "python3-rich"),  # for pneumo view only
     "distributed": ("distributed", None),  # for sweeps over a Dask cluster only
     "pyarrow": ("pyarrow", None),  # for tables in Parquet only
+    "argcomplete": ("argcomplete", "python3-argcomplete"),  # for the shell's completion only
 }
-OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow")
+OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow", "argcomplete")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs
 

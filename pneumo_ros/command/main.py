@@ -8,6 +8,7 @@ from types import ModuleType
 
 from pneumo_ros import __version__
 from pneumo_ros.command.arguments import Parser
+from pneumo_ros.command.completing import answer
 from pneumo_ros.command.console import Console, columns
 from pneumo_ros.environment import LIBRARIES, library_advice
 from pneumo_ros.errors import DataError, PneumoError, UsageError
@@ -30,6 +31,7 @@ VERBS = (
     "fleet",
     "view",
     "workbench",
+    "completion",
 )  # in the order help lists them; each is a module of the room `verb`
 
 EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong usage, 3 unreadable or unfit data,
@@ -38,6 +40,7 @@ EXIT_CODES = """exit codes: 0 done, 1 done but outside what was asked, 2 wrong u
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `pneumo` with `arguments` (those of the process, if None) and return the exit code."""
+    answer(VERBS, lambda name, parser: _verb(name).add_arguments(parser))
     try:
         return _run(list(sys.argv[1:] if arguments is None else arguments))
     except PneumoError as error:
@@ -82,8 +85,10 @@ def _verb(name: str) -> ModuleType:
 
 
 def verb_parser(name: str, verb: ModuleType) -> Parser:
-    """The parser of one verb; its description is the module's docstring."""
-    parser = Parser(prog=f"pneumo {name}", description=(verb.__doc__ or "").strip(), epilog=EXIT_CODES)
+    """The parser of one verb; its description is the module's docstring, its end are the EXAMPLES."""
+    examples = "\n".join(("examples:", *(f"  {line}" for line in verb.EXAMPLES)))
+    epilog = f"{examples}\n\n{EXIT_CODES}"
+    parser = Parser(prog=f"pneumo {name}", description=(verb.__doc__ or "").strip(), epilog=epilog)
     verb.add_arguments(parser)
     return parser
 

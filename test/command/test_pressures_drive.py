@@ -45,6 +45,7 @@ def test_recordings_of_two_kinds_are_refused(folder: Path, capsys: pytest.Captur
     assert "steps has no valve command, pushes_valve has one" in capsys.readouterr().err
 
 
+@pytest.mark.check
 def test_an_effect_found_so_goes_into_the_whole_machine(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "better.yaml"
     bags = [str(folder / "steps"), "--holdout", str(folder / "pushes")]

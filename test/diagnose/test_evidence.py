@@ -30,6 +30,7 @@ def test_they_are_the_residuals_of_the_equations(equation: str, width: int) -> N
     assert np.sqrt(np.mean(ours**2)) == pytest.approx(np.sqrt(np.mean(theirs**2)), rel=0.02)
 
 
+@pytest.mark.check
 def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
     model, _, run = own("sweep")
     found = missing(model, model.inputs)

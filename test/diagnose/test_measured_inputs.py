@@ -62,6 +62,7 @@ def ranked(model: Model, given: Sequence[Run]) -> list[Hypothesis]:
     return screen(fitter.ranking_fit(fitter.refit(model)))
 
 
+@pytest.mark.check
 def test_it_is_ranked_first_with_its_size() -> None:
     best = ranked(rod(), runs())[0]
     assert best.name == EFFECT

@@ -32,6 +32,7 @@ def slips() -> Slips:
     return Slips(runs, runs, rows, rows)
 
 
+@pytest.mark.check
 def test_along_its_tangent_what_is_missing_promises_most() -> None:
     tangents = Tangents.of(alone(), slips(), {name: 1e-3 * alone()[name] for name in friction_priors(alone(), {})})
     loss, model = tangents.best("stribeck_shape")

@@ -29,7 +29,8 @@ def one_way(direction: int) -> Offer:
     return Offer("one-way", "", "constant-voltage", "", (Part(replace(both, trials=trials), {}),))
 
 
-@pytest.mark.parametrize("direction", [1, pytest.param(-1, marks=pytest.mark.check)])
+@pytest.mark.check
+@pytest.mark.parametrize("direction", [1, -1])
 def test_sliding_one_way_does_not_separate_a_load_from_asymmetric_friction(direction: int) -> None:
     assert found("asymmetric_friction", "constant_load", one_way(direction))["one-way"].separation < 1.5
 
@@ -54,6 +55,7 @@ def test_friction_known_before_tells_a_large_load_from_friction_and_hardly_a_sma
     assert told.if_b > CLEAR  # Coulomb friction of 90 N instead of 70 N is beyond what was known
 
 
+@pytest.mark.check
 def test_a_slow_triangle_shows_the_play_of_a_blocked_pistons_valve_and_jumps_do_not() -> None:
     told = found("valve_hysteresis", "valve_null_offset", "blocked-triangle", "steps", "vent")
     assert list(told) == ["blocked-triangle", "steps", "vent"]
@@ -83,6 +85,7 @@ def test_pauses_separate_growth_at_rest_from_the_stribeck_curve() -> None:
     assert told["triangle"].separation < 0.1  # it never breaks away
 
 
+@pytest.mark.check
 def test_vented_chambers_show_an_offset_of_their_sensors_which_no_leak_explains() -> None:
     vent = found("pressure_sensor_offset", "leakage_to_atmosphere", "vent")["vent"]
     assert vent.if_a > 10.0

@@ -60,6 +60,7 @@ def test_lanes_of_all_effects_equal_single_runs_to_the_bit() -> None:
         assert run.tobytes() == lane.simulate(VOLTAGE, state).tobytes()
 
 
+@pytest.mark.check
 def test_lanes_of_all_effects_follow_a_motion_as_each_would_alone() -> None:
     """To the bit, along a measured motion that these effects would not produce themselves."""
     model, lanes = everything(), mild_variants(20)

@@ -55,6 +55,7 @@ def opened(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[O
         one.close()
 
 
+@pytest.mark.check
 def test_the_verdicts_differ_in_word_sign_and_colour(opened: Open) -> None:
     for scheme in ("dark", "light"):
         signs, colours = set(), set()

@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from pneumo_ros.diagnose.adding import Adding
     from pneumo_ros.plant import Model
 
+EXAMPLES = (
+    "pneumo add viscous_friction runs --holdout runs/hold_1 --model my.yaml --out more.yaml",
+    "pneumo add viscous_friction valve_spool_dynamics runs --out more.yaml",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """EFFECT... BAG..., --out, --holdout, how to read recordings, and the common options."""

@@ -26,6 +26,12 @@ if TYPE_CHECKING:
 
 SHOWN_RUNS = 8  # more runs than these get one line each
 
+EXAMPLES = (
+    "pneumo compare run_1 run_2 --model my.yaml",
+    "pneumo compare hold_1 --fit run_1 run_2 --model my.yaml --out refitted.yaml",
+    "pneumo compare run_1 --model my.yaml --read-as bar,gauge --report page.html",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --horizon, how to read recordings, the refit, the report and the common options."""

@@ -32,6 +32,11 @@ OWN_ERROR = """This plant is the model. Any error beyond the noise comes from ti
 reaches the simulator and is stamped when it reaches the recorder, a fraction of a millisecond apart. Near sticking,
 this matters."""
 
+EXAMPLES = (
+    "pneumo demo                 # another machine each time",
+    "pneumo demo --seed 7        # the same one again",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--seed, --rig, --recording, --seconds, --out and the common options."""

@@ -36,6 +36,12 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 EVALUATION = 12.0  # times one prediction of the held-out runs: what the result takes after the search
 
+EXAMPLES = (
+    "pneumo diagnose runs --holdout runs/hold_1 --model my.yaml --out better.yaml",
+    "pneumo diagnose runs --holdout runs/hold_1 --model my.yaml --within 120s --report page.html",
+    "pneumo diagnose runs --holdout runs/hold_1 --effects mine.py",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --holdout, --out, how to read recordings, and the common options."""

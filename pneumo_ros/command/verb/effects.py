@@ -15,6 +15,11 @@ if TYPE_CHECKING:
 
 FRAME_ROOM = "frame"
 
+EXAMPLES = (
+    "pneumo effects              # all, a line each",
+    "pneumo effects lugre_friction",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """NAME and the common options."""

@@ -29,6 +29,12 @@ if TYPE_CHECKING:
 FORMATS = (".yaml", ".yml", ".csv")
 TIMEOUT = 200.0  # ms
 
+EXAMPLES = (
+    "pneumo experiment constant-voltage --model my.yaml --plan            # nothing moves",
+    "pneumo experiment constant-voltage --model my.yaml --namespace rig --out runs",
+    "pneumo experiment --separate asymmetric_friction constant_load --plan",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """NAME, the form of the trials, where to run them, and the common options."""

@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 ENDINGS = {"fmu": ".fmu", "c": ".c"}
 FMI = ("3", "2")
 
+EXAMPLES = (
+    "pneumo export fmu my.yaml --out axis.fmu",
+    "pneumo export c my.yaml --out axis.c",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """FORMAT, MODEL, --out, --fmi and the common options."""

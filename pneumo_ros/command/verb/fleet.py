@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from pneumo_ros.fleet.folder import Campaign
     from pneumo_ros.sweep import Journal
 
+EXAMPLES = (
+    "pneumo fleet rigs --results nightly --report fleet.html",
+    "pneumo fleet rigs --results nightly --identify-only",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """FOLDER, how to compute, and the common options."""

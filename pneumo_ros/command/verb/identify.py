@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 
 ADDABLE = {"viscous": "viscous_friction", "stribeck_exponent": "stribeck_shape"}  # option -> effect
 
+EXAMPLES = (
+    "pneumo identify runs --out my.yaml",
+    "pneumo identify runs --model new.yaml --out my.yaml --report my.html",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --out, what else to fit, and the common options."""

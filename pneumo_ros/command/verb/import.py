@@ -20,6 +20,11 @@ from pneumo_ros.command.targets import targets
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.files import check_writable, write_whole
 
+EXAMPLES = (
+    "pneumo import run.csv --guess --map map.yaml      # then look at map.yaml",
+    "pneumo import run*.csv --map map.yaml --out bags",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """TABLE..., the map, where to write, and the common options."""

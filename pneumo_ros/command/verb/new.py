@@ -1,8 +1,5 @@
 """Make a machine file from data sheets: cylinder, valve, supply, mass, mounting; without options, it asks.
 
-pneumo new --cylinder iso15552-32-250 --valve smc-sy7000 --supply 6barg --mass 10 --out my.yaml
-pneumo new --bore 25 --rod 10 --stroke 200 --valve-flow 'qn 700 l/min' --supply 6barg --mass 2kg --out my.yaml
-
 Every value has its source beside it, and a standard deviation as wide as the source is (section uncertainty), which
 fits take as its prior. Where nothing is published a rule stands in, and says so. `pneumo parts` lists the parts.
 """
@@ -27,6 +24,12 @@ NEEDED = {"supply": "6barg", "mass": "10kg"}
 WISHES = (
     "cylinder", "bore", "rod", "stroke", "valve", "valve_flow", "signal", "supply", "mass", "mounting", "sensors",
 )  # fmt: skip
+
+EXAMPLES = (
+    "pneumo new                  # question by question",
+    "pneumo new --cylinder iso15552-32-250 --valve smc-sy7000 --supply 6barg --mass 10 --out my.yaml",
+    "pneumo new --bore 25 --rod 10 --stroke 200 --valve-flow 'qn 700 l/min' --supply 6barg --mass 2 --out my.yaml",
+)  # parsed by a test
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

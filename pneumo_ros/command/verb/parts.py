@@ -1,7 +1,6 @@
 """Cylinders and valves as sold: figures, units, and where each figure comes from.
 
-pneumo parts                  all parts, one line each; the same as pneumo parts list
-pneumo parts show smc-sy7000  one of them with its sources; pneumo parts smc-sy7000 does the same
+`pneumo parts` lists all of them, `pneumo parts show NAME` or `pneumo parts NAME` one with its sources.
 """
 
 import argparse
@@ -13,6 +12,11 @@ from pneumo_ros.errors import UsageError
 
 if TYPE_CHECKING:
     from pneumo_ros.parts.part import Part
+
+EXAMPLES = (
+    "pneumo parts                # cylinders and valves, a line each",
+    "pneumo parts show smc-sy7000",
+)  # parsed by a test
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -49,6 +49,13 @@ class Plan:
         return len(self.held) // self.parts
 
 
+EXAMPLES = (
+    "pneumo simulate --input step:2.5@1 --seconds 5 --out step_run",
+    "pneumo simulate --input sine:3,0.5 --seconds 20 --model my.yaml --out sine_run",
+    "pneumo simulate --input step_run --model better.yaml --out again   # the commands of a recording",
+)  # parsed by a test
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--input, --out, duration, rate and start."""
     new = "folder of the new recording; it must not exist yet"

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 EVALUATIONS = 80
 
+EXAMPLES = (
+    "pneumo tune --law cascade --model my.yaml --out my_cascade.yaml",
+    "pneumo tune --law pid --amplitude 0.02 --frequency 1 --model my.yaml --out my_pid.yaml",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--law, --out and the references to follow."""

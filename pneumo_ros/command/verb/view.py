@@ -32,6 +32,11 @@ SHOWN = {
     "effort": ("effort", "N", 1.0), "load_cell": ("load cell", "N", 1.0),
 }  # fmt: skip
 
+EXAMPLES = (
+    "pneumo view runs",
+    "pneumo view run_1 --read-as bar",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., how to read them, and the output."""

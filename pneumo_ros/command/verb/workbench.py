@@ -18,6 +18,11 @@ from pneumo_ros.environment import require_libraries
 
 PORT = 8765
 
+EXAMPLES = (
+    "pneumo workbench runs --model my.yaml",
+    "pneumo workbench                        # only what the shipped machine does",
+)  # parsed by a test
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --port, how to read recordings, and the machine file."""
