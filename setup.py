@@ -25,9 +25,10 @@ FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
 WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, and pneumo view
 PARQUET = ["pyarrow>=14"]  # tables in Parquet, for pneumo import
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
+FRAMES = ["pandas>=1.5"]  # data frames of results, in Python
 COMPLETION = ["argcomplete>=3"]  # for the script that pneumo completion writes
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
-TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.3.20"]
+TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.3.20", "nbclient>=0.8", "ipykernel>=6"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
 BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
@@ -79,10 +80,11 @@ setup(
         "workbench": WORKBENCH,
         "dask": DASK,
         "parquet": PARQUET,
+        "frames": FRAMES,
         "completion": COMPLETION,
         "peers": PEERS,
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + COMPLETION + TEST + DEV + BUILD,
+        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + COMPLETION + TEST + DEV + BUILD,
     },
     entry_points={
         "console_scripts": [

@@ -41,8 +41,9 @@ LIBRARIES = {
     "distributed": ("distributed", None),  # for sweeps over a Dask cluster only
     "pyarrow": ("pyarrow", None),  # for tables in Parquet only
     "argcomplete": ("argcomplete", "python3-argcomplete"),  # for the shell's completion only
+    "pandas": ("pandas", "python3-pandas"),  # for to_dataframe only
 }
-OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow", "argcomplete")
+OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow", "argcomplete", "pandas")
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs
 

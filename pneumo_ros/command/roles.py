@@ -69,12 +69,17 @@ def read_roles(
     train: dict[str, bool], held: dict[str, bool], options: argparse.Namespace, console: Console, model: "Model"
 ) -> "tuple[list[Run], list[Run], dict[str, str]]":
     """The runs to fit, those to judge by, and what was passed over, as `read_expanded`; UsageError for copies."""
-    import numpy as np  # slow; --help does not need it
-
     fitted, passed = read_expanded(train, options, console, model)
     judging, more = read_expanded(held, options, console, model) if held else ([], {})
+    check_copies(fitted, judging)
+    return fitted, judging, passed | more
+
+
+def check_copies(fitted: "Sequence[Run]", judging: "Sequence[Run]") -> None:
+    """UsageError for a recording that is fitted and, under another name, held out."""
+    import numpy as np  # slow; --help does not need it
+
     for run in judging:
         for other in fitted:
             if np.array_equal(run.position, other.position):
                 raise UsageError(f"{run.name}, held out, is a copy of {other.name}, which is fitted; name another one")
-    return fitted, judging, passed | more

@@ -1,8 +1,8 @@
 """What to record next: to distinguish an added effect from its rivals, or to see more of an unexplained residual."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pneumo_ros.command.console import Console
 from pneumo_ros.compare.wording import EQUATIONS, VARIABLES
 from pneumo_ros.errors import PneumoError
 
@@ -42,25 +42,27 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     return found
 
 
-def suggested(outcome: "Outcome", machine: str, console: Console) -> str:
-    """A sentence, "" where there is nothing to distinguish or no time left; `machine` is what --model takes."""
+def suggested(outcome: "Outcome", machine: str, progress: Callable[[float], None] = lambda share: None) -> str:
+    """A sentence, "" where there is nothing to distinguish or no time left; `machine` is what --model takes.
+
+    `progress` is called with the share done.
+    """
     if outcome.interrupted or outcome.deadline or outcome.model.force_driven:
         return ""
     for added in outcome.added:
         if added.indistinguishable_from:
-            return _separating(outcome, added, machine, console)
+            return _separating(outcome, added, machine, progress)
     return _showing(outcome.unexplained, machine) if outcome.unexplained else ""
 
 
-def _separating(outcome: "Outcome", added: "Addition", machine: str, console: Console) -> str:
+def _separating(outcome: "Outcome", added: "Addition", machine: str, progress: Callable[[float], None]) -> str:
     """The experiment that best distinguishes an effect from its first rival."""
     from pneumo_ros.experiment.separate import separate
     from pneumo_ros.experiment.suggestion import suggestion
 
     rival = added.indistinguishable_from[0]
     try:
-        with console.progress("Choosing an experiment") as progress:
-            ranked = separate(outcome.model.measuring(()), added.effect, rival, progress=progress)
+        ranked = separate(outcome.model.measuring(()), added.effect, rival, progress=progress)
     except PneumoError as problem:  # the diagnosis is valid without it
         return f"No experiment that distinguishes {added.effect} from {rival} could be simulated: {problem}."
     except KeyboardInterrupt:

@@ -37,9 +37,10 @@ def verdict(result: Mapping[str, Any]) -> str:
     worst = max((s["ratio_to_noise"] or 0.0 for s in result["signals"].values()), default=0.0)
     runs = f"{len(result['runs'])} recording" + ("s" if len(result["runs"]) != 1 else "")
     if not failing:
-        return (
-            f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge.{caution}"
-        )
+        off = any(not one["explained_by_noise"] for one in result["signals"].values())
+        still = f"; predictions over {result['horizon_s']:g} s are still up to {times(worst)} the sensor noise off"
+        sentence = f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge"
+        return f"{sentence}{still if off else ''}.{caution}"
     *others, last = (_words(name) for name in failing)
     names = f"{', '.join(others)} and {last}" if others else last
     verb = "fails" if len(failing) == 1 else "fail"

@@ -83,13 +83,15 @@ def _installed() -> dict[str, type[Effect]]:
 class Library:
     """The available effects: catalogue, installed packages and the given files; files come first."""
 
-    def __init__(self, effect_files: Iterable[str | Path] = ()) -> None:
-        """Load `effect_files`; raises UsageError as `effects_of_file` does, or when a file redefines an effect."""
+    def __init__(self, effect_files: Iterable[str | Path | type[Effect]] = ()) -> None:
+        """Load `effect_files`: paths, or classes. UsageError as `effects_of_file`, or when one redefines an effect."""
         self._own: dict[str, type[Effect]] = {}
-        for path in effect_files:
-            for name, effect in effects_of_file(str(path)).items():
+        for given in effect_files:
+            where = f"class {given.__name__}" if isinstance(given, type) else f"effects file {given}"
+            found = {given.name: given} if isinstance(given, type) else effects_of_file(str(given))
+            for name, effect in found.items():
                 if name in _catalogue_modules() or name in FRAME or name in self._own:
-                    raise UsageError(f"effects file {path} defines {name}, which is already taken; rename the class")
+                    raise UsageError(f"{where} defines {name}, which is already taken; rename the class")
                 self._own[name] = effect
 
     def names(self) -> tuple[str, ...]:

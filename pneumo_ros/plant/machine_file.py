@@ -8,6 +8,7 @@ from typing import Any
 from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.files import write_whole, yaml_number
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.model import Model
 from pneumo_ros.plant.uncertainty import SECTION, flat, nested
@@ -39,8 +40,11 @@ def read_machine(name_or_path: str | Path) -> tuple[str, str]:
         ) from error
 
 
-def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | Path] = ()) -> Model:
+def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | Path | type[Effect]] = ()) -> Model:
     """Load a machine file, completely or not at all.
+
+    `name_or_path`: a path, or the name of a shipped one, `axis`, `paper` or `emps`. `effects_files`: effects of your
+    own, as paths of Python files or as classes.
 
     Raises DataError when the file cannot be read, and UsageError, with the nearest names, for an unknown or missing
     section, effect or parameter, or a value that is no finite number within its range.
@@ -136,7 +140,7 @@ def _meaning(model: Model, dotted: str) -> str:
 
 
 def save_model(model: Model, path: str | Path, *, overwrite: bool = True) -> Path:
-    """Write the machine file of `model`, whole or not at all; returns the path.
+    """Write the machine file of `model` to `path`, whole or not at all; returns the path.
 
     Raises DataError when the file exists and `overwrite` is false, UsageError when it cannot be written.
     """

@@ -100,15 +100,17 @@ def read_run(path: str | Path, model: Model, options: ReadOptions | None = None,
     """
     how = options or ReadOptions()
     recording = corrected_recording(path, how, model.parameters.get("air.atmospheric_pressure", ATMOSPHERE))
-    run, notes = checked_run(recording, _judging(model, recording, how), cuts)
+    run, notes = run_of(recording, model, cuts, mechanics=how.mechanics)
     return Reading(recording, run, (*recording.warnings, *notes))
 
 
-def _judging(model: Model, recording: Recording, how: ReadOptions) -> Model:
-    """The model, or its mechanics alone where `how` allows them and the recording has no valve command."""
+def run_of(
+    recording: Recording, model: Model, cuts: Sequence[Cut] = (), *, mechanics: bool = False
+) -> tuple[Run, list[str]]:
+    """As `checked_run`; with `mechanics`, those of `model` alone where the recording has no valve command."""
     commanded = recording.voltage is not None or not recording.pressures_drive
-    alone = how.mechanics and not (commanded or model.force_driven or model.imposed)
-    return (mechanical(model) or model) if alone else model
+    alone = mechanics and not (commanded or model.force_driven or model.imposed)
+    return checked_run(recording, (mechanical(model) or model) if alone else model, cuts)
 
 
 def read_runs(

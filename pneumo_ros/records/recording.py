@@ -2,10 +2,15 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from pneumo_ros.environment import require_libraries
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -45,6 +50,25 @@ class Recording:
     def duration(self) -> float:
         """From the first to the last sample [s]."""
         return float(self.time[-1])
+
+    @property
+    def signals(self) -> dict[str, Array]:
+        """Every signal on `time` (n,) by its name, SI units: those that the recording has."""
+        names = (
+            "position", "velocity", "effort", "pressure_a", "pressure_b", "supply_pressure", "voltage", "load_cell",
+        )  # fmt: skip
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """The signals as columns of a pandas data frame, over time [s]; UsageError where pandas is not installed."""
+        require_libraries(("pandas",))
+        import pandas as pd
+
+        return pd.DataFrame(self.signals, index=pd.Index(self.time, name="time"))
+
+    def __str__(self) -> str:
+        rate = 1.0 / self.sample_time
+        return f"{self.name}: {self.duration:.4g} s at {rate:.4g} Hz, {len(self)} samples of {', '.join(self.signals)}"
 
     @property
     def force_driven(self) -> bool:

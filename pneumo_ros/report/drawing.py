@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLOURS = {
+COLOURS = {  # of each role
     "measured": "#8791a1", "model": "#0b6fc2", "error": "#c2410c", "free": "#7a5195", "noise": "#6b7688",
     "quiet": "#9aa5b5", "first": "#0b6fc2", "second": "#c2410c", "third": "#2f855a",
 }  # fmt: skip
@@ -34,19 +34,30 @@ def draw_charts(
     """
     import matplotlib as mpl
 
-    settings: Any = {
+    with mpl.rc_context(_settings()):
+        for k, one in enumerate(figures):
+            if progress:
+                progress(k / len(figures))
+            made = _heat(one) if isinstance(one, HeatMap) else _chart(one)
+            for kind, metadata in (("png", {}), ("svg", {"Date": None})):
+                made.savefig(folder / f"{one.name}.{kind}", dpi=_DPI, metadata=metadata)
+    return len(figures)
+
+
+def drawn(chart: Chart | HeatMap) -> "Figure":
+    """One chart as a figure of matplotlib."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(_settings()):
+        return _heat(chart) if isinstance(chart, HeatMap) else _chart(chart)
+
+
+def _settings() -> Any:
+    return {
         "svg.fonttype": "none", "svg.hashsalt": "pneumo_ros", "path.simplify": True, "axes.grid": True,
         "grid.color": "#e6eaf0", "axes.spines.top": False, "axes.spines.right": False, "font.size": 9.0,
         "axes.formatter.useoffset": False, "text.usetex": False, "text.parse_math": False,
     }  # fmt: skip
-    with mpl.rc_context(settings):
-        for k, one in enumerate(figures):
-            if progress:
-                progress(k / len(figures))
-            drawn = _heat(one) if isinstance(one, HeatMap) else _chart(one)
-            for kind, metadata in (("png", {}), ("svg", {"Date": None})):
-                drawn.savefig(folder / f"{one.name}.{kind}", dpi=_DPI, metadata=metadata)
-    return len(figures)
 
 
 def _chart(chart: Chart) -> "Figure":
@@ -94,7 +105,7 @@ def _panel(axes: "Axes", panel: Panel) -> None:
 
 
 def _trace(axes: "Axes", trace: Trace, label: str | None) -> None:
-    colour = _COLOURS[trace.role]
+    colour = COLOURS[trace.role]
     if trace.kind == "band":
         axes.fill_between(trace.x, trace.y, _upper(trace), color=colour, alpha=0.18, linewidth=0.0)
     elif trace.kind == "area":

@@ -16,11 +16,14 @@ _LIBRARIES = ("numpy", "scipy", "numba", "rosbags", "mcap", "plotly")
 
 
 def provenance(
-    bags: Iterable[str | Path], machine: str, arguments: Sequence[str], effects: Iterable[str | Path] = ()
+    bags: Iterable[str | Path], machine: str | None, arguments: Sequence[str], effects: Iterable[str | Path] = ()
 ) -> dict[str, Any]:
-    """JSON: `files`, `versions`, `command` and `created` (UTC); `arguments` are those after the program's name."""
+    """JSON: `files`, `versions`, `command` and `created` (UTC); `arguments` are those after the program's name.
+
+    `machine`: None where it is no file.
+    """
     found = [_file(path, "recording") for bag in bags for path in _files_of(Path(bag))]
-    found.append(_machine(machine))
+    found += [] if machine is None else [_machine(machine)]
     found += [_file(Path(path), "effects") for path in effects]
     return {
         "files": found,

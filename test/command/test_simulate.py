@@ -133,5 +133,5 @@ def test_a_formula_has_no_pressures(capsys: pytest.CaptureFixture[str]) -> None:
     force_driven_files()
     assert main(["simulate", "--input", "sine:300,1", "--model", "sealed.yaml", "--out", "run", "--quiet"]) == 2
     said = capsys.readouterr().err
-    assert "effects of 'sealed' read measured signals (p_a, p_b); give --input a recording that has them" in said
+    assert "effects of 'sealed' read measured signals (p_a, p_b); give a recording that has them as the input" in said
     assert not Path("run").exists()

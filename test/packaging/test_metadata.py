@@ -20,7 +20,7 @@ PACKAGE_XML = ElementTree.parse(ROOT / "package.xml").getroot()
 # import name -> rosdep key, where pip and rosdep use different names
 ROSDEP = {name: f"python3-{name}" for name in (
     "numpy", "scipy", "numba", "yaml", "plotly", "matplotlib", "rich", "waitress",
-    "argcomplete",
+    "argcomplete", "pandas",
 )}  # fmt: skip
 # rosbags, mcap and dash have no rosdep key; the former two bring three more; sweeps do without a cluster, most imports
 # without Parquet
@@ -89,7 +89,7 @@ def test_everything_imported_is_declared() -> None:
     declared = {element.text for tag in ("depend", "exec_depend") for element in PACKAGE_XML.findall(tag)}
     extras = SETUP["extras_require"]
     asked = [*SETUP["install_requires"], *extras["report"], *extras["figures"], *extras["workbench"], *extras["dask"]]
-    asked += [*extras["parquet"], *extras["completion"]]
+    asked += [*extras["parquet"], *extras["completion"], *extras["frames"]]
     required = {re.split(r"[<>=]", name)[0] for name in asked}
     for name in third_party_imports():
         name = PART_OF.get(name, name)

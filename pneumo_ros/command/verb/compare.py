@@ -90,13 +90,16 @@ def _print(console: Console, model: "Model", comparison: "Comparison", result: d
         console.say(refit_text(result["refit"]) + "\n")
     for caution in model.cautions():
         console.note(f"Note: {caution}")
-    if len(comparison.runs) <= SHOWN_RUNS:
-        for one in comparison.runs:
-            console.say(run_text(one, comparison.horizon) + "\n")
-    else:
-        console.say(runs_text(comparison) + "\n")
+    console.say(comparison_text(comparison) + "\n")
     console.say(equations_text(comparison))
     console.say("\n" + findings_text(result))
+
+
+def comparison_text(comparison: "Comparison") -> str:
+    """The errors of every run: a table for each, or one line for each of many."""
+    if len(comparison.runs) > SHOWN_RUNS:
+        return runs_text(comparison)
+    return "\n\n".join(run_text(one, comparison.horizon) for one in comparison.runs)
 
 
 def run_text(run: "RunComparison", horizon: float) -> str:

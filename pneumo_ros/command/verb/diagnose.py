@@ -80,7 +80,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     for name, topics in unseen(model, [*train, *held]).items():
         console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
     outcome, estimates = diagnosed(model, train, held, console, end, options.horizon)
-    experiment = suggested(outcome, options.out or options.model, console)
+    with console.progress("Choosing an experiment") as progress:
+        experiment = suggested(outcome, options.out or options.model, progress)
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
     result["cannot_say"] = cannot_say(outcome)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
