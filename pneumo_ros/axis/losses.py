@@ -10,10 +10,15 @@ class LossCount:
         self.lost = 0
         self._last: dict[Hashable, int] = {}
 
-    def note(self, publisher: Hashable, number: int | None) -> None:
-        """A message with `number` arrived from `publisher`; None where the middleware does not number messages."""
+    def note(self, publisher: Hashable, number: int | None, *, began_later: bool = False) -> None:
+        """A message with `number` arrived from `publisher`; None where the middleware does not number messages.
+
+        `began_later`: the publisher appeared after the counting began, so that all its messages should have arrived.
+        """
         if number is None:
             return
+        if began_later:
+            self._last.setdefault(publisher, 0)
         last = self._last.get(publisher)
         if last is None or number > last:
             self._last[publisher] = number

@@ -28,6 +28,7 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
         _require(signals, commands, pressure_a, pressure_b)
     joints = _cut(signals, pressures, commands)
     signals.warnings += checks.all_of(pressures, joints)
+    signals.warnings += checks.pauses(commands, joints) if commands is not None else []
     joints = checks.outside_gaps(joints, pressures)
     time = seconds(joints.stamp, int(joints.stamp[0]))
     command_time, command, voltage = _zero_order_hold(commands, time, int(joints.stamp[0]))

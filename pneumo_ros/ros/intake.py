@@ -4,7 +4,7 @@ The middleware's own thread puts messages into a deep queue and notes when each 
 they are fetched. The sequence numbers of the publishers show how many messages never arrived.
 """
 
-from collections.abc import Hashable
+import time
 from typing import Any, NamedTuple
 
 from rclpy.node import Node
@@ -14,8 +14,10 @@ from rclpy.subscription import Subscription
 from pneumo_ros.axis.losses import LossCount
 from pneumo_ros.ros.message_classes import message_class
 
+EARLY = 1.0  # s, in which publishers that were there before are discovered
 DEPTH = 5000  # messages of one topic that may wait: 5 s at 1 kHz
 
+_GID = 16  # bytes of an identity that all middlewares fill
 # A best-effort subscriber hears every publisher. Latched messages come only to reliable, transient local subscribers.
 _PLAIN = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -46,6 +48,8 @@ class Intake:
         )
         self._subscriptions: dict[str, Subscription] = {}
         self._losses: dict[str, LossCount] = {}
+        self._early: set[bytes] = set()  # publishers that were there before
+        self._began = time.monotonic()
         self.types: dict[str, str] = {}
         self._latched: set[str] = set()
 
@@ -57,11 +61,20 @@ class Intake:
         profile = _LATCHED if latched else _PLAIN
         self._subscriptions[topic] = self._node.create_subscription(kind, topic, _unused, profile, raw=True)
         self._losses.setdefault(topic, LossCount())
+        self.meet(topic)
         self.types[topic] = message_type
         (self._latched.add if latched else self._latched.discard)(topic)
 
+    def meet(self, topic: str) -> None:
+        """Note the publishers of `topic` that are there while this begins: some of their messages came before."""
+        if time.monotonic() - self._began < EARLY:
+            offered = self._owner.get_publishers_info_by_topic(topic)
+            self._early |= {bytes(one.endpoint_gid) for one in offered}
+
     def relax(self) -> None:
         """Subscribe as volatile to topics that should be latched, but whose publishers do not latch them."""
+        for topic in self._subscriptions:
+            self.meet(topic)
         for topic in list(self._latched):
             offered = self._owner.get_publishers_info_by_topic(topic)
             if offered and not any(latches(one.qos_profile) for one in offered):
@@ -74,9 +87,14 @@ class Intake:
             loss, fetch, kind = self._losses[topic], subscription.handle.take_message, subscription.msg_type
             while (found := fetch(kind, True)) is not None:
                 payload, info = found
-                loss.note(_publisher(info), info["publication_sequence_number"])
+                publisher = _publisher(info)
+                later = bool(publisher) and bool(self._early) and not self._is_early(publisher)
+                loss.note(publisher, info["publication_sequence_number"], began_later=later)
                 taken.append(Taken(info["received_timestamp"], topic, payload, info["source_timestamp"]))
         return taken
+
+    def _is_early(self, publisher: bytes) -> bool:
+        return any(publisher[:_GID] == one[:_GID] for one in self._early)
 
     @property
     def lost(self) -> dict[str, int]:
@@ -94,7 +112,7 @@ def latches(profile: QoSProfile) -> bool:
     return profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
 
 
-def _publisher(info: dict[str, Any]) -> Hashable:
+def _publisher(info: dict[str, Any]) -> bytes:
     """Which publisher a message came from; the same for all where rclpy does not report it."""
     return bytes((info.get("publisher_gid") or {}).get("data", b""))
 

@@ -15,6 +15,7 @@ def main() -> int:
 
 from collections.abc import Callable, Iterable
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -37,11 +38,12 @@ class AxisNode(Node):
 
         Raises UsageError for a given value of wrong type or out of range.
         """
-        decided = [] if simulated_time is None else [Parameter("use_sim_time", value=simulated_time)]
         try:
-            super().__init__(name, automatically_declare_parameters_from_overrides=True, parameter_overrides=decided)
+            super().__init__(name, automatically_declare_parameters_from_overrides=True)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             raise UsageError(str(error)) from error
+        if simulated_time is not None:
+            self._decide_time(simulated_time)
         self.failure: Exception | None = None  # what ended this node; `run` reports it
         self.end: Callable[[], None] = lambda: None  # asks for the end of the process; set by `run`
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
@@ -49,6 +51,19 @@ class AxisNode(Node):
         self.parameters.declare(settings)
         self.rivals: Rivals | None = None  # of a node whose role only one node in a namespace can have
         self.diagnostics = Diagnostics(self, self._whole_health)
+
+    def _decide_time(self, simulated: bool) -> None:
+        """Say so, and refuse it, where use_sim_time is given otherwise than this node needs it."""
+        why = f"use_sim_time stays {str(simulated).lower()} here: this node is the source of the simulated time"
+        if self.get_parameter("use_sim_time").value is not simulated:
+            self.get_logger().warning(why)
+            self.set_parameters([Parameter("use_sim_time", value=simulated)])
+
+        def check(parameters: list[Parameter]) -> SetParametersResult:
+            wrong = any(one.name == "use_sim_time" and one.value is not simulated for one in parameters)
+            return SetParametersResult(successful=not wrong, reason=why if wrong else "")
+
+        self.add_on_set_parameters_callback(check)
 
     def health(self) -> Health:
         """What /diagnostics says about this node."""
@@ -63,6 +78,10 @@ class AxisNode(Node):
 
     def start(self) -> None:
         """Called once, when callbacks are being served."""
+
+    def ready(self) -> str:
+        """What the log says once the node runs."""
+        return "ready"
 
     def fail(self, failure: Exception) -> None:
         """End the process because of `failure`; from any thread."""

@@ -106,6 +106,7 @@ def _live(make: Callable[[], Sequence[AxisNode]]) -> None:
             for node in nodes:
                 node.end = STOP.set
                 node.start()
+                node.get_logger().info(node.ready())
                 if node.failure is not None:  # a callback has failed before `end` was known
                     node.end()
             STOP.wait()

@@ -38,3 +38,13 @@ def test_messages_that_overtake_each_other_are_not_lost(seed: int) -> None:
     order = np.argsort(kept[1:-1] + rng.uniform(0, 5, len(kept) - 2))
     arrivals = [1, *kept[1:-1][order].tolist(), 199]
     assert lost(*(("a", number) for number in arrivals)) == len(numbers) - len(kept)
+
+
+def test_what_a_publisher_sent_first_counts_where_it_began_later() -> None:
+    count = LossCount()
+    count.note("a", 3, began_later=True)
+    assert count.lost == 2
+    count.note("a", 4, began_later=True)
+    assert count.lost == 2
+    count.note("b", 1, began_later=True)
+    assert count.lost == 2

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pneumo_ros.axis.simulator.machine import changed, machine_from_parameters
+from pneumo_ros.axis.simulator.machine import changed, check_live, machine_from_parameters
 from pneumo_ros.axis.simulator.settings import EFFECTS
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
@@ -53,3 +53,19 @@ def test_what_only_a_recording_has_is_refused_while_it_runs(files: tuple[str]) -
 def test_a_machine_without_chambers_is_refused() -> None:
     with pytest.raises(UsageError, match="emps has no chambers; the simulator takes a machine file with a section"):
         machine_from_parameters("emps", {})
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"lugre_friction.static_friction": 50.0}, "static friction 50 N is below Coulomb friction 70 N"),
+        ({"air.supply_pressure": 9e4}, "the supply pressure, 90000 Pa, is absolute"),
+        ({"piston.stroke": 0.5}, "the piston is at 0.6 m, outside of a stroke of 0.5 m; move it inside first"),
+        ({"chambers.volume_a": 1e-5}, "chamber"),
+    ],
+)
+def test_what_cannot_run_is_refused_while_it_runs(values: dict[str, float], words: str) -> None:
+    model = machine_from_parameters("axis", {}, ())
+    check_live(model, 0.6)
+    with pytest.raises(UsageError, match=words):
+        check_live(changed(model, values), 0.6)

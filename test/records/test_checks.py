@@ -8,7 +8,7 @@ from identify.making import recording
 
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.records import Recording
-from pneumo_ros.records.checks import gaps, outside_gaps
+from pneumo_ros.records.checks import gaps, outside_gaps, pauses
 from pneumo_ros.records.clocks import after_turns, jumps
 from pneumo_ros.records.corrections import PRESSURE_UNITS, WORDS, corrected, parse_words
 from pneumo_ros.records.series import Series
@@ -158,3 +158,30 @@ def test_commands_after_the_clock_was_set_back() -> None:
     assert [x.tolist() for x in after_turns(log, 0, 0)] == [[0, 1, 2], log[:3].tolist()]
     assert [x.tolist() for x in after_turns(log, 1, -7)] == [[2, 3, 4], [-7, *log[3:].tolist()]]
     assert [x.tolist() for x in after_turns(log, 2, -7)] == [[4], [-7]]  # none came since
+
+
+# --- an overloaded PC -------------------------------------------------------------------------------------------------
+
+
+def streams(repeats: bool, late: float) -> tuple[Series, Series]:
+    """Commands at 1 kHz with a pause from 0.8 s to 1.1 s, and joint states that come `late` [s] in that time."""
+    stamp = np.arange(2000) * 1_000_000
+    sent = stamp[(stamp < 800_000_000) | (stamp > 1_100_000_000)]
+    values = np.floor(np.arange(len(sent)) / (2 if repeats else 1)).astype(float)
+    arrived = stamp + np.where((stamp > 8e8) & (stamp < 1.1e9), round(late * 1e9), 0)
+    joints = Series("joint_states", stamp, arrived, {"position": np.zeros(len(stamp))})
+    return Series("valve/command", sent, sent, {"data": values}), joints
+
+
+@pytest.mark.parametrize(("repeats", "late"), [(True, 0.0), (False, 0.2), (True, 0.2)])
+def test_a_pause_of_a_stream_of_commands_is_an_overloaded_pc(repeats: bool, late: float) -> None:
+    (said,) = pauses(*streams(repeats, late))
+    assert "valve/command: 1 pauses of more than 0.05 s in a stream of 1000 Hz, the longest 0.3 s at 0.799 s" in said
+    assert ("joint states came up to 0.2 s late" in said) == (late > 0.0)
+    assert "--cut BAG:0.8-1.6" in said
+
+
+def test_commands_that_are_sent_on_change_may_rest() -> None:
+    assert pauses(*streams(repeats=False, late=0.0)) == []
+    few = Series("valve/command", np.arange(5) * 10**9, np.arange(5) * 10**9, {"data": np.arange(5.0)})
+    assert pauses(few, streams(repeats=False, late=0.0)[1]) == []

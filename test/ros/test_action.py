@@ -131,7 +131,7 @@ def test_cancelling_brakes_and_stopping_aborts(monkeypatch: pytest.MonkeyPatch) 
     player.run.go(1000, follow=True)
     assert 0.0 < player.run.position < 0.1
     goal = Goal(0.1, 2)
-    player = Player(monkeypatch, meanwhile=lambda: player.loop.guide.stop())
+    player = Player(monkeypatch, meanwhile=lambda: player.loop.guide.close())
     result = player.serve(goal)
     assert (goal.ended, result.error_string) == ("abort", "the valve was closed")
     with pytest.raises(UsageError):

@@ -98,6 +98,30 @@ def test_a_stream_that_breaks_off_ends_at_its_last_position(rig: Rig) -> None:
     assert "the last position is held" in one.health(f"{PLACE}/controller")[1]["reason"]
 
 
+def test_stop_brakes_over_the_distance_that_it_states(rig: Rig) -> None:
+    one = rig.moving()
+    answer = one.trigger("controller/stop")
+    begin = one.position
+    assert answer.success
+    stated = 1e-3 * float(answer.message.partition("after ")[2].partition(" mm")[0])
+    assert 0.005 < stated < 0.06
+    one.wait(lambda: one.voltage == 0.0, "a closed valve")
+    one.comes_to_rest()
+    assert abs(one.position - begin) < 1.5 * stated + 0.01  # it coasted 248 mm when the valve was closed at once
+    assert "stopped" in one.health(f"{PLACE}/controller")[0]
+
+
+def test_what_no_machine_is_is_refused_while_it_runs(rig: Rig) -> None:
+    one = rig.probe
+    for name, value, words in (
+        ("lugre_friction__static_friction", 10.0, "is below Coulomb friction"),
+        ("air__supply_pressure", 5e4, "is absolute"),
+        ("use_sim_time", True, "use_sim_time stays false here"),
+    ):
+        done, why = one.set("simulator", **{name: value})
+        assert (done, words in why) == (False, True), why
+
+
 def test_a_simulator_that_is_killed_and_started_again(rig: Rig) -> None:
     one = rig.moving()
     rig.simulator.process.kill()

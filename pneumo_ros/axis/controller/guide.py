@@ -9,6 +9,7 @@ from pneumo_ros.control import Law, Reference, Setpoint
 from pneumo_ros.control.motion import Capability, Limits, Motion, Trajectory, Vent, Waypoint, ahead, require, slowed
 from pneumo_ros.errors import UsageError
 
+SETTLING = 0.1  # s at rest, before the valve is closed at the end of a stop
 NEAR = 0.01  # m; a smooth reference nearer to the piston than this is followed without a profile
 
 
@@ -17,6 +18,7 @@ class Mode(Enum):
 
     FOLLOWING = "following"
     HOLDING = "holding"
+    STOPPING = "stopping"
     STOPPED = "stopped"
     VENTING = "venting"
 
@@ -38,6 +40,7 @@ class Guide:
         self._time = 0.0  # of the last measurement
         self._early: tuple[float, float | None] | None = None  # requested before the first measurement
         self._vent: Vent | None = None
+        self._closing = math.inf  # when the valve is closed, at the end of a stop
 
     @property
     def capability(self) -> Capability:
@@ -49,6 +52,8 @@ class Guide:
     def wanted(self, time: float, position: float) -> Setpoint | None:
         """The setpoint, None if there is nothing to follow."""
         self.position, self._time = position, time
+        if self.mode is Mode.STOPPING and time >= self._closing:
+            self.close()
         if self._early is not None:
             early, self._early = self._early, None
             self.motion.aim(*early, time, position)
@@ -68,9 +73,9 @@ class Guide:
 
     def supplied(self, pressure: float, time: float) -> None:
         """Take the supply pressure [Pa abs]; when it returns, the piston holds its present position."""
-        before, changed = self.supply.lost, self.supply.take(pressure)
+        before, changed = self.supply.lost, self.supply.take(pressure, time)
         if self._vent is not None and not self.supply.shut_off(self.law.machine.atmospheric_pressure):
-            self.stop()  # otherwise the open valve would drive the piston
+            self.close()  # otherwise the open valve would drive the piston
         if self.position is not None and before and not self.supply.lost and self.motion.asked:
             self._settle(time, "the supply pressure was lost")
         if changed:
@@ -116,7 +121,7 @@ class Guide:
         assert self.position is not None
         if self.mode in (Mode.STOPPED, Mode.VENTING):
             self._settle(time, reason)
-        else:
+        elif self.mode is not Mode.STOPPING:
             self.motion.brake(time, self.position, reason)
         self.mode, self._vent = Mode.HOLDING, None
 
@@ -126,10 +131,27 @@ class Guide:
         if self.position is not None and self.motion.asked:
             self.motion.brake(time, self.position, "halt was requested")
 
-    def stop(self) -> None:
-        """Close the valve at once; a trajectory is given up."""
+    def stop(self, time: float) -> float:
+        """Brake within the limits, then close the valve; a trajectory is given up. Returns the stopping distance [m].
+
+        The valve is closed at once where nothing moves under control. A second stop changes nothing.
+        """
+        if self.mode is Mode.STOPPING and self.position is not None and self.motion.target is not None:
+            return abs(self.motion.target - self.position)
+        if self.mode in (Mode.STOPPED, Mode.VENTING) or self.supply.lost or not self.motion.asked:
+            self.close()
+            return 0.0
+        assert self.position is not None
+        self._early = None
+        end = self.motion.brake(time, self.position, "stop was called")
+        self.mode, self._closing = Mode.STOPPING, end + SETTLING
+        assert self.motion.target is not None
+        return abs(self.motion.target - self.position)  # with the lag of the piston behind its setpoint
+
+    def close(self, reason: str = "the valve was closed") -> None:
+        """Close the valve at once: the piston coasts. A trajectory is given up."""
         self.mode, self._vent, self._early = Mode.STOPPED, None, None
-        self._give_up("the valve was closed")
+        self._give_up(reason)
 
     def vent(self, time: float) -> None:
         """Empty both chambers. The supply must be shut off: otherwise it would drive the piston."""

@@ -5,6 +5,7 @@ import math
 from pneumo_ros.errors import UsageError
 
 DEAD = 1.3  # times atmospheric pressure: the highest pressure of a supply that is shut off
+SILENT = 5.0  # s; an older pressure is not known any more
 CHANGE = 0.02  # relative; a smaller change leaves the limits as they are
 
 
@@ -14,6 +15,8 @@ class Supply:
     def __init__(self) -> None:
         """Not measured yet."""
         self.pressure: float | None = None
+        self.silent = False  # whether it was measured once, and nobody sends it any more
+        self._time = 0.0
         self.least = 0.0
         self._noted: float | None = None
 
@@ -22,11 +25,22 @@ class Supply:
         """Whether the pressure is known to be too low to move anything."""
         return self.pressure is not None and self.pressure < self.least
 
-    def take(self, pressure: float) -> bool:
-        """Take a measurement [Pa abs]; whether it changed by more than CHANGE. UsageError if not finite."""
+    def age(self, time: float) -> None:
+        """At `time` [s] of the loop: a pressure that nobody has sent for SILENT is not known any more.
+
+        A supply that was lost stays lost.
+        """
+        if self.pressure is not None and not self.lost and time - self._time > SILENT:
+            self.pressure, self.silent = None, True
+
+    def take(self, pressure: float, time: float = 0.0) -> bool:
+        """Take a measurement [Pa abs] at `time` [s]; whether it changed by more than CHANGE.
+
+        Raises UsageError if it is not finite.
+        """
         if not math.isfinite(pressure):
             raise UsageError(f"supply pressure {pressure!r} is no finite number")
-        self.pressure = pressure
+        self.pressure, self.silent, self._time = pressure, False, time
         if self._noted is not None and abs(pressure - self._noted) <= CHANGE * self._noted:
             return False
         self._noted = pressure

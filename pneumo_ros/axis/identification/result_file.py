@@ -65,7 +65,7 @@ def determined(result: Mapping[str, Any]) -> dict[str, float]:
 def sentence(result: Mapping[str, Any]) -> str:
     """One line for the log."""
     values = [
-        f"{name.partition('.')[2]} {one['value']:.5g} ({one['low']:.5g} to {one['high']:.5g}) {one['unit']}"
+        f"{name} {one['value']:.5g} ({one['low']:.5g} to {one['high']:.5g}) {one['unit']}"
         for name, one in result["parameters"].items()
         if one["determined"]
     ]

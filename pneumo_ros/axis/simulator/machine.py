@@ -38,6 +38,28 @@ def changed(model: Model, values: Mapping[str, Any]) -> Model:
     return _simulable(model.with_parameters(new) if new else model)
 
 
+def check_live(model: Model, position: float) -> None:
+    """Raise UsageError unless the piston at `position` [m] can go on as `model`: inside, with air that drives it."""
+    values = model.parameters
+    static, coulomb = (values.get(f"lugre_friction.{name}_friction", 0.0) for name in ("static", "coulomb"))
+    if static < coulomb:
+        raise UsageError(
+            f"static friction {static:g} N is below Coulomb friction {coulomb:g} N: it takes as much or more; "
+            "set both together to change both"
+        )
+    supply, atmosphere = values["air.supply_pressure"], values["air.atmospheric_pressure"]
+    if supply < atmosphere:
+        raise UsageError(
+            f"the supply pressure, {supply:g} Pa, is absolute: it takes the atmosphere's {atmosphere:g} Pa or more"
+        )
+    reach = 0.5 * values["piston.stroke"]
+    if abs(position) > 1.05 * reach:
+        raise UsageError(
+            f"the piston is at {position:.4g} m, outside of a stroke of {2.0 * reach:g} m; move it inside first"
+        )
+    model.state(y=position)  # chambers keep a volume at both ends
+
+
 def _simulable(model: Model) -> Model:
     if model.force_driven:
         raise UsageError(f"{model.name} has no chambers; the simulator takes a machine file with a section 'chambers'")

@@ -49,6 +49,10 @@ class Capability:
         m, v = self.machine, np.asarray(speed, dtype=float)
         return np.asarray(m.coulomb_friction + (m.viscous_friction + m.drag * v) * v + side * m.load)
 
+    def breakaway(self, side: float) -> float:
+        """Force [N] that starts a motion to `side`: static friction, and the load."""
+        return max(self.machine.static_friction, self.machine.coulomb_friction) + side * self.machine.load
+
     def top_speed(self, side: float) -> float:
         """Largest steady speed [m/s] to `side`; 0 if the piston cannot move."""
         slow, fast = 0.0, 100.0

@@ -87,11 +87,12 @@ class Motion:
         """Follow any function of time, as it is."""
         self.kind, self.reference, self.target, self._drift = Kind.FREE, reference, None, 0.0
 
-    def brake(self, time: float, measured: float, reason: str = "") -> None:
-        """Come to rest within the limits, and stay there."""
+    def brake(self, time: float, measured: float, reason: str = "") -> float:
+        """Come to rest within the limits, and stay there; returns when it will be at rest [s]."""
         profile = braking(self.start_of(time, measured), time, self.limits)
         self.kind, self.reference, self.target, self._drift = Kind.TARGET, profile, profile.target, 0.0
         self.reason = reason
+        return profile.end
 
     def rest(self, time: float, measured: float, reason: str = "") -> None:
         """Stay where the piston is."""

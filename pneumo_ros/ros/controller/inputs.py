@@ -13,7 +13,7 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.records.contract import SUPPLY_PRESSURE
 from pneumo_ros.ros import readers
 from pneumo_ros.ros.controller.requests import nanoseconds, waypoints_of
-from pneumo_ros.ros.qos import SUBSCRIBE
+from pneumo_ros.ros.qos import RELIABLE, SUBSCRIBE
 
 if TYPE_CHECKING:
     from pneumo_ros.ros.controller.node import Controller
@@ -31,9 +31,9 @@ class Inputs:
         self.refused = ""  # the last refusal, with its reason
         self._complained: dict[str, float] = {}  # kind of input -> when the log last reported it [s]
         self._commands = readers.JointReader(joint, whole=True)
-        node.create_subscription(Float64, REFERENCE, self._reference, SUBSCRIBE)
-        node.create_subscription(JointTrajectory, TRAJECTORY, self._trajectory, SUBSCRIBE)
-        node.create_subscription(JointState, COMMANDS, self._command, SUBSCRIBE, raw=True)
+        node.create_subscription(Float64, REFERENCE, self._reference, RELIABLE)
+        node.create_subscription(JointTrajectory, TRAJECTORY, self._trajectory, RELIABLE)
+        node.create_subscription(JointState, COMMANDS, self._command, RELIABLE, raw=True)
         node.create_subscription(FluidPressure, SUPPLY_PRESSURE, self._supply, SUBSCRIBE)
 
     def follow(self, message: JointTrajectory) -> tuple[Trajectory, float]:

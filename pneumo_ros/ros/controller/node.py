@@ -10,7 +10,7 @@ from sensor_msgs.msg import FluidPressure, JointState
 from std_msgs.msg import Float64
 
 from pneumo_ros.axis.controller.guiding import set_guide
-from pneumo_ros.axis.controller.health import health_of
+from pneumo_ros.axis.controller.health import Growth, health_of
 from pneumo_ros.axis.controller.loop import Loop
 from pneumo_ros.axis.controller.settings import (
     SETTINGS,
@@ -67,6 +67,7 @@ class Controller(AxisNode):
         self._heard: int | None = None  # when the last measurement came
         self._stamp = 0  # of the last measurement
         self._stale = self._finished = False
+        self._growth, self._told = Growth(), ""
         self._sending = threading.Lock()
         self.rivals.settle()
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
@@ -125,7 +126,14 @@ class Controller(AxisNode):
         if voltage is not None:
             self._heard, self._stamp, self._stale = now, sample.stamp, self._recovered()
             self.send(voltage)
+            self._complain()
             self._setpoints.tell(self.loop.wanted, self.loop.time, self.stamp_now())
+
+    def _complain(self) -> None:
+        """Log once why a position is not believed."""
+        if self.loop.fault and not self._told:
+            self.get_logger().error(f"{self.loop.fault}: sending 0 V")
+        self._told = self.loop.fault
 
     def _recovered(self) -> bool:
         if self._stale:
@@ -167,6 +175,10 @@ class Controller(AxisNode):
         if self._clock_ns is time.monotonic_ns:
             take_priority(self.parameters["real_time_priority"])
 
+    def ready(self) -> str:
+        """The law and the joint."""
+        return f"ready: {self._law} moves joint '{self._joint}'; it waits for joint_states"
+
     def finish(self) -> None:
         """0 V is the last command."""
         self.send(0.0)
@@ -174,7 +186,14 @@ class Controller(AxisNode):
             self._finished = True
         self._publisher.wait_for_all_acked(Duration(seconds=0.2))
 
+    @property
+    def stale(self) -> bool:
+        """Whether measurements are missing."""
+        return self._stale
+
     def health(self) -> Health:
         """See `health_of`."""
         age = None if self._heard is None else (self._clock_ns() - self._heard) * 1e-9
-        return health_of(self.loop, self.inputs.refused, age, self._stale)
+        found = health_of(self.loop, self.inputs.refused, age, self._stale)
+        found.warnings += self._growth.warnings(self.loop)
+        return found

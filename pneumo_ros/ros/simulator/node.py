@@ -105,6 +105,11 @@ class Simulator(AxisNode):
             self._ticker.start()
             take_priority(self.parameters["real_time_priority"])  # after the start: new threads do not inherit it
 
+    def ready(self) -> str:
+        """The machine and its rate."""
+        model = self.simulation.model
+        return f"ready: {model.name} with {len(model.effects)} effects, joint_states at {self.simulation.rate:g} Hz"
+
     def finish(self) -> None:
         """Stop the plant."""
         self.paused = True

@@ -8,7 +8,7 @@ from typing import Any
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 from pneumo_ros.axis.simulator.compiling import Compiler
-from pneumo_ros.axis.simulator.machine import changed
+from pneumo_ros.axis.simulator.machine import changed, check_live
 from pneumo_ros.axis.simulator.settings import EFFECTS, machine_settings
 from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.errors import UsageError
@@ -43,6 +43,8 @@ class Tuning:
     def _check(self, values: Values) -> None:
         model = changed(self._wanted, values)
         model.state(**initial_state(values))
+        if model is not self._wanted:
+            check_live(model, float(self._simulation.plant.state[0]))
         if values["max_voltage"] <= 0.0:
             raise UsageError("max_voltage is 0 V; it takes a positive number")
 
