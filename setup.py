@@ -26,6 +26,7 @@ WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, a
 PARQUET = ["pyarrow>=14"]  # tables in Parquet, for pneumo import
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 FRAMES = ["pandas>=1.5"]  # data frames of results, in Python
+MUJOCO = ["mujoco>=3.1"]  # cylinders on arms
 COMPLETION = ["argcomplete>=3"]  # for the script that pneumo completion writes
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.3.20", "nbclient>=0.8", "ipykernel>=6"]
@@ -81,10 +82,11 @@ setup(
         "dask": DASK,
         "parquet": PARQUET,
         "frames": FRAMES,
+        "mujoco": MUJOCO,
         "completion": COMPLETION,
         "peers": PEERS,
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + COMPLETION + TEST + DEV + BUILD,
+        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + MUJOCO + COMPLETION + TEST + DEV + BUILD,
     },
     entry_points={
         "console_scripts": [

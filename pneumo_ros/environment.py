@@ -42,8 +42,20 @@ LIBRARIES = {
     "pyarrow": ("pyarrow", None),  # for tables in Parquet only
     "argcomplete": ("argcomplete", "python3-argcomplete"),  # for the shell's completion only
     "pandas": ("pandas", "python3-pandas"),  # for to_dataframe only
+    "mujoco": ("mujoco", None),  # for cylinders on arms of MuJoCo only
 }
-OPTIONAL = ("plotly", "matplotlib", "dash", "waitress", "rich", "distributed", "pyarrow", "argcomplete", "pandas")
+OPTIONAL = (
+    "plotly",
+    "matplotlib",
+    "dash",
+    "waitress",
+    "rich",
+    "distributed",
+    "pyarrow",
+    "argcomplete",
+    "pandas",
+    "mujoco",
+)
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs
 
