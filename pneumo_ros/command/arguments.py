@@ -52,7 +52,11 @@ def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None
         metavar="WORD,WORD",
         default="",
         help="read recordings that are not in SI units and absolute pressures, or wired otherwise: bar, kPa, hPa, MPa, "
-        "psi; gauge; mm; swapped-chambers, reversed-position, reversed-voltage",
+        "psi; gauge; mm; swapped-chambers, reversed-position, reversed-voltage; zero=125mm: position at mid stroke; "
+        "closed=5V: the command that closes the valve",
+    )
+    parser.add_argument(
+        "--rig", metavar="RIG.yaml", help="machine and wiring of the rig, as `pneumo rig check` writes them"
     )
     if cut:
         parser.add_argument(

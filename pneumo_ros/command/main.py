@@ -10,6 +10,7 @@ from pneumo_ros import __version__
 from pneumo_ros.command.arguments import Parser
 from pneumo_ros.command.completing import answer
 from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.rig_file import apply_rig
 from pneumo_ros.environment import LIBRARIES, library_advice
 from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.nearest import unknown_name
@@ -19,6 +20,7 @@ VERBS = (
     "parts",
     "new",
     "import",
+    "rig",
     "simulate",
     "identify",
     "compare",
@@ -70,6 +72,7 @@ def _run(arguments: list[str]) -> int:
     verb = _verb(arguments[0])
     parser = verb_parser(arguments[0], verb)
     options = parser.parse_strictly(arguments[1:])
+    apply_rig(options)
     console = Console(getattr(options, "quiet", False), getattr(options, "json", None))
     code: int = verb.run(options, console)
     sys.stdout.flush()

@@ -8,6 +8,7 @@ from pneumo_ros.control.control_file import Control
 from pneumo_ros.control.tuning import Costs, Gains, RatedMotion, cost
 from pneumo_ros.errors import NumericalError
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.plant.closed import centred
 from pneumo_ros.sweep import Pool, sweep
 
 # model and files of effects as `load_model` takes them, the numbers of a `Task`, a spool [rad/s]
@@ -45,5 +46,5 @@ def run_cost(tuned: Tuned, control: tuple[str, dict[str, float], float], run: in
 def _prepared(tuned: Tuned) -> tuple[Model, list[RatedMotion]]:
     """Machine and motions of one tuning; a worker keeps them."""
     model, effects, task, spool = tuned
-    machine = load_model(model, effects_files=effects)
+    machine = centred(load_model(model, effects_files=effects))
     return machine, rated_motions(machine, Task(*task), spool)

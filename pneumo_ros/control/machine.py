@@ -48,6 +48,7 @@ class Machine:
     viscous_friction: float = _known("viscous_friction.coefficient", 0.0)
     mass_added: float = _known("payload_mass.mass_added", 0.0)
     load: float = _known("constant_load.load", 0.0)
+    null_offset: float = _known("valve_null_offset.offset", 0.0)
     spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # 1000: no lag
     spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
     atmosphere_on_rod: bool = True
@@ -62,6 +63,11 @@ class Machine:
         """
         known = {f.name: float(values.get(f.metadata["dotted"], f.metadata["absent"])) for f in _FIELDS}
         return cls(**known, atmosphere_on_rod=ATMOSPHERE in effects, has_flow=FLOW in effects, effects=tuple(effects))
+
+    @property
+    def closed_signal(self) -> float:
+        """The command [V] that closes the valve; laws count their voltages from it."""
+        return -self.null_offset + 0.0  # never -0
 
     @property
     def moving_mass(self) -> float:

@@ -1,7 +1,7 @@
 """All experiments, by the name that a user types."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from pneumo_ros.errors import UsageError
@@ -9,6 +9,7 @@ from pneumo_ros.experiment import constant_voltage, excitation, telling
 from pneumo_ros.experiment.programme import Programme
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import centred, closed_signal
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,8 @@ def make_programme(name: str, model: Model, voltages: Sequence[float] = (), seco
         if name != "constant-voltage":
             raise UsageError(f"{name} chooses its voltages itself; voltages are for constant-voltage")
         make = partial(_with_voltages, voltages)
-    return make(model, experiment.seconds if seconds is None else seconds)
+    made = make(centred(model), experiment.seconds if seconds is None else seconds)
+    return replace(made, closed=closed_signal(model))
 
 
 def _with_voltages(voltages: Sequence[float], model: Model, seconds: float) -> Programme:

@@ -49,6 +49,7 @@ class Programme:
     trials: tuple[Trial, ...]
     rest: float = 0.6  # at closed valve before each trial, recorded
     prepare: str = ""  # preparation by hand
+    closed: float = 0.0  # signal [V] at which the valve is closed; voltages of trials are counted from it
 
     def __post_init__(self) -> None:
         if not -self.end < self.low < self.high < self.end < math.inf:
@@ -71,8 +72,10 @@ class Programme:
     def _check_voltages(self) -> None:
         given = {trial.name: trial.voltage.largest for trial in self.trials}
         for name, volts in {**given, "return_right": self.return_right, "return_left": self.return_left}.items():
-            if not 0.0 < volts <= MAX_VOLTAGE:
-                raise UsageError(f"{name} is {volts:g} V; allowed is more than 0 to {MAX_VOLTAGE:g} V")
+            if not 0.0 < volts <= MAX_VOLTAGE - abs(self.closed):
+                most = MAX_VOLTAGE - abs(self.closed)
+                beside = f" beside the closed signal of {self.closed:g} V" if self.closed else ""
+                raise UsageError(f"{name} is {volts:g} V; allowed is more than 0 to {most:g} V{beside}")
 
     @property
     def span(self) -> float:

@@ -12,12 +12,13 @@ from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.yaml_text import load_yaml
 
-_NUMBERS = {"low": "m", "high": "m", "end": "m", "return_right": "V", "return_left": "V", "rest": "s"}
+_NUMBERS = {"low": "m", "high": "m", "end": "m", "return_right": "V", "return_left": "V", "rest": "s", "closed": "V"}
 _TRIAL = ("name", "constant", "steps", "sweep", "seconds", "patience", "travel", "anywhere")
 _HEAD = """\
 # Trials of '{experiment}', made for the machine '{machine}'. Run them with: pneumo experiment THIS_FILE
 # Positions in m from mid stroke, voltages in V, times in s. A trial ends at low and high; the end stop is at +-end.
 # return_right and return_left take the piston back; rest is how long it rests, recorded, before each trial.
+# closed is the signal that closes the valve; all other voltages are counted from it.
 """
 
 
@@ -68,7 +69,9 @@ def _programme(document: object) -> Programme:
     if not isinstance(given.get("trials"), list):
         raise UsageError("there is no list 'trials'")
     numbers: dict[str, Any] = {
-        name: _number(given, name, unit) for name, unit in _NUMBERS.items() if name in given or name != "rest"
+        name: _number(given, name, unit)
+        for name, unit in _NUMBERS.items()
+        if name in given or name not in ("rest", "closed")
     }
     trials = tuple(_trial(entry) for entry in given["trials"])
     texts: dict[str, Any] = {name: str(given.get(name) or "") for name in ("experiment", "machine", "prepare")}

@@ -42,13 +42,13 @@ def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: 
         )
     plant = Stepper(model, model.state(y=position), sample_time=sample)
     conductor = Conductor(programme)
-    path, commands, way = [(0.0, position)], [(0.0, 0.0)], 0.0
+    path, commands, way = [(0.0, position)], [(0.0, programme.closed)], 0.0
     recorded: list[tuple[float, float]] = []
     last, aborted = None, ""
     try:
         while not conductor.done:
             before = float(plant.state[0])
-            volts = conductor.step(plant.time, before)
+            volts = programme.closed + conductor.step(plant.time, before)
             if conductor.recording != last and conductor.recording is not None:
                 recorded.append((plant.time, plant.time))
             if (last := conductor.recording) is not None:
@@ -60,5 +60,5 @@ def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: 
                 path.append((plant.time, float(plant.state[0])))
     except AbortedError as error:
         aborted = str(error)
-    commands.append((plant.time, 0.0))
+    commands.append((plant.time, programme.closed))
     return Rehearsal(tuple(conductor.outcomes), plant.time, way, tuple(path), tuple(commands), tuple(recorded), aborted)

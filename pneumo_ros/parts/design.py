@@ -78,8 +78,9 @@ def _cautions(order: Order) -> list[str]:
     found = []
     if closed := order.nominal.get("signal_closed", 0.0):
         found.append(
-            f"the valve is closed at {closed:g} V, and 0 V moves the piston: a node that sends 0 V to stop does not "
-            "stop this machine; keep pressure away from the rig until its closed signal is set up"
+            f"the valve is closed at {closed:g} V, and 0 V moves the piston: start simulator, controller and "
+            "experiments with this machine file, which close it there, and keep pressure away from the rig while "
+            "anything else commands it"
         )
     if order.switched:
         found.append(

@@ -22,6 +22,7 @@ _POOR = 0.2  # residual over signal above which mistakes are looked for
 _MOVES = 0.01  # m of motion: with less, leaks look like exchanged or reversed signals
 _VENTED = 0.5  # of the atmospheric pressure: chambers of a running axis are above it
 _BLOCK = 0.05  # s
+_MIDDLES = (5.0, 2.5, -2.5, -5.0)  # V
 _UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
 
 
@@ -56,7 +57,7 @@ def _mistake(model: Model, run: Run) -> str | None:
     if not vented and not _poor(model, run, recorded):
         return None
     moves = np.ptp(run.position) > _MOVES
-    possible = [mistake for mistake in _mistakes(model) if moves or mistake.word == "gauge"]
+    possible = [mistake for mistake in _mistakes(model, run) if moves or mistake.word == "gauge"]
     if not possible:
         return None
     tried = {mistake: _residuals(model, mistake.undo(run)) for mistake in possible}
@@ -72,7 +73,7 @@ def _mistake(model: Model, run: Run) -> str | None:
     )
 
 
-def _mistakes(model: Model) -> list[_Mistake]:
+def _mistakes(model: Model, run: Run) -> list[_Mistake]:
     """Possible mistakes in a recording of this kind of axis."""
     reversed_position = _Mistake(
         lambda run: replace(run, position=-run.position, further=_reversed(run.further)),
@@ -103,7 +104,24 @@ def _mistakes(model: Model) -> list[_Mistake]:
             f"add the atmosphere's {rise:.6g} Pa where they are published",
         ),
         reversed_position,
-        *([] if model.imposed else [reversed_voltage]),
+        *([] if model.imposed else [reversed_voltage, *_off_centre(run)]),
+    ]
+
+
+def _off_centre(run: Run) -> list[_Mistake]:
+    """The middle of usual ranges of one sign, 0 to 10 V and 0 to 5 V, where commands lie on both sides of it."""
+    low, high = float(np.min(run.input)), float(np.max(run.input))
+    if low < -0.1 * high and high > -0.1 * low:
+        return []
+    return [
+        _Mistake(
+            lambda run, closed=closed: replace(run, input=run.input - closed),  # type: ignore[misc]
+            f"the valve seems to be closed at {closed:g} V, not at 0 V",
+            f"closed={closed:g}V",
+            f"add valve_null_offset to the effects of the machine file, with offset: {-closed:g}",
+        )
+        for closed in _MIDDLES
+        if low < closed < high
     ]
 
 

@@ -86,8 +86,7 @@ def trimmed(before: Series, after: Series, why: str) -> list[str]:
 def pauses(commands: Series, joint_states: Series) -> list[str]:
     """Pauses in a stream of commands, and joint states that came late: an overloaded PC, which no model explains.
 
-    A command that is sent on change only may rest as long as it likes: it is a stream only where equal commands follow
-    one another, or where joint states came late at the same time.
+    A command that is sent on change may rest as long as it likes: a pause counts where joint states came late in it.
     """
     steps, late = np.diff(commands.stamp) * 1e-9, (joint_states.log_time - joint_states.stamp) * 1e-9
     if len(steps) < FEWEST:
@@ -96,21 +95,19 @@ def pauses(commands: Series, joint_states: Series) -> list[str]:
     wide = np.flatnonzero(steps > max(GAP * usual, PAUSE))
     if not len(wide) or len(wide) > 0.1 * len(steps):
         return []
-    repeats = bool((np.diff(commands.values["data"]) == 0.0).any())
     slow = joint_states.stamp[delay > PAUSE]
     begin, end = commands.stamp[wide], commands.stamp[wide + 1]
     overloaded = np.searchsorted(slow, end) > np.searchsorted(slow, begin)
-    wide = wide if repeats else wide[overloaded]
+    wide = wide[overloaded]
     if not len(wide):
         return []
     longest = wide[np.argmax(steps[wide])]
     at = (commands.stamp[longest] - joint_states.stamp[0]) * 1e-9
-    came = f"; joint states came up to {float(delay.max()):.2g} s late" if overloaded.any() else ""
     return [
         f"{commands.topic}: {len(wide)} pauses of more than {max(GAP * usual, PAUSE):.2g} s in a stream of "
-        f"{1.0 / usual:.0f} Hz, the longest {steps[longest]:.2g} s at {at:.3f} s{came}: the PC was overloaded, or the "
-        f"controller stood still. A valve closes when commands stop, which no model knows: leave these times out, such "
-        f"as --cut BAG:{max(at, 0.0):.1f}-{at + steps[longest] + 0.5:.1f}."
+        f"{1.0 / usual:.0f} Hz, the longest {steps[longest]:.2g} s at {at:.3f} s; joint states came up to "
+        f"{float(delay.max()):.2g} s late: the PC was overloaded. A valve closes when commands stop, which no model "
+        f"knows: leave these times out, such as --cut BAG:{max(at, 0.0):.1f}-{at + steps[longest] + 0.5:.1f}."
     ]
 
 

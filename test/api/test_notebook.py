@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.check
 NOTEBOOK = Path(__file__).parents[2] / "docs/notebooks/recordings_to_model.ipynb"
 
 

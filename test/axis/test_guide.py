@@ -319,3 +319,13 @@ def test_what_grows_is_warned_of_once_a_second() -> None:
     assert growth.warnings(run.loop) == ["1 restarts after pauses of the measurements"]
     run.go(100)
     assert growth.warnings(run.loop) == []
+
+
+def test_voltages_are_counted_from_the_closed_signal_of_the_machine_file() -> None:
+    from pneumo_ros.axis.controller.settings import SETTINGS, machine_of, valve_of
+
+    values = {one.name: one.default for one in SETTINGS} | {"valve_null_offset.offset": -5.0}
+    assert machine_of(values).closed_signal == 5.0
+    assert valve_of(values).max_voltage == 5.0  # 0 to 10 V
+    with pytest.raises(UsageError, match="no room to open it"):
+        valve_of(values | {"max_voltage": 4.0})

@@ -79,3 +79,19 @@ def test_reset_closes_and_forgets() -> None:
     valve.reset()
     assert held(valve, 1) == [0.0] * PARTS
     assert math.isinf(valve.age(1.0))
+
+
+def test_it_closes_at_the_signal_of_its_machine() -> None:
+    """A valve of 0 to 10 V is closed at 5 V: before the first command, after the last one, and for a new machine."""
+    valve = ValveInput(10.0, 0.0023, closed=5.0)
+    assert held(valve, 0) == [5.0] * PARTS
+    valve.accept(7.0, SAMPLE)
+    assert held(valve, 1) == [7.0] * PARTS
+    held(valve, 2)
+    assert held(valve, 4) == [5.0] * PARTS
+    valve.close_at(4.8)
+    assert held(valve, 5) == [4.8] * PARTS
+    valve.accept(7.0, 6 * SAMPLE)
+    held(valve, 6)
+    valve.close_at(5.0)
+    assert held(valve, 7)[0] == 7.0

@@ -95,6 +95,7 @@ def pushed(truth: Model, phase: float) -> Run:
     return Run(f"run {phase}", 1e-3, y, None, None, force, np.ones(n, dtype=bool), True, {"p_a": p_a})
 
 
+@pytest.mark.check
 def test_an_effect_of_ones_own_needs_only_the_sensor_that_it_reads(tmp_path: Path) -> None:
     (tmp_path / "own.py").write_text(OWN)
     model = rod(Library([tmp_path / "own.py"]))

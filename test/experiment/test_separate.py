@@ -35,6 +35,7 @@ def test_sliding_one_way_does_not_separate_a_load_from_asymmetric_friction(direc
     assert found("asymmetric_friction", "constant_load", one_way(direction))["one-way"].separation < 1.5
 
 
+@pytest.mark.check
 def test_a_load_is_not_friction_with_one_ratio_but_friction_with_a_ratio_for_each_level_is_nearly_a_load() -> None:
     ranked = separate(AXIS, "asymmetric_friction", "constant_load", offers=[MENU["constant-voltage"]])
     assert ranked[0].if_a > CLEAR  # 10 % are 3.5 N of load while the piston slides and 5 N where it breaks away
@@ -109,6 +110,7 @@ def test_more_noise_separates_less() -> None:
     assert quiet.log_likelihood_ratio == pytest.approx(0.5 * quiet.separation**2)
 
 
+@pytest.mark.check
 def test_an_experiment_that_ends_at_a_stop_is_not_offered() -> None:
     rush = constant_voltage(AXIS, [7.0], 20.0)
     trials = tuple(replace(trial, travel=2.0) for trial in rush.trials)
@@ -122,6 +124,7 @@ def test_an_experiment_that_ends_at_a_stop_is_not_offered() -> None:
     assert chosen.offer.name == "slow-reversals"
 
 
+@pytest.mark.check
 def test_the_sentence_says_which_why_and_how() -> None:
     ranked = separate(AXIS, "valve_hysteresis", "valve_null_offset", offers=[MENU["blocked-triangle"], MENU["steps"]])
     sentence = suggestion(ranked, "valve_hysteresis", "valve_null_offset", "my_axis.yaml")

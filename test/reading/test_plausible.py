@@ -148,3 +148,11 @@ def test_short_runs_are_judged_as_far_as_they_go(samples: int) -> None:
         input=run.input[: 10 * (samples - 1)], measured=run.measured[:samples],
     )  # fmt: skip
     check_run(model, part)
+
+
+def test_commands_about_another_closed_signal_are_named_with_the_word_that_mends_it() -> None:
+    """A valve of 0 to 10 V: taken as it is, its recording once gave a confident diagnosis of backlash and lag."""
+    run = rig("train_steps")[2]
+    with pytest.raises(DataError, match="the valve seems to be closed at 5 V, not at 0 V") as caught:
+        check_run(load_model(), replace(run, input=run.input + 5.0))
+    assert "Type --read-as closed=5V, or add valve_null_offset" in str(caught.value)

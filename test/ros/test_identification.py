@@ -210,6 +210,7 @@ def test_refusals_are_reported_and_the_rest_is_used(tmp_path: Path, bags: list[P
         assert process.end(signal.SIGINT) == 0
 
 
+@pytest.mark.check
 def test_too_little_is_an_error_on_diagnostics_and_no_end(tmp_path: Path, bags: list[Path]) -> None:
     command = identification(tmp_path, "little", bags=[str(tmp_path / "later")], folder="")
     with listener("little") as hears, running(*command, cwd=tmp_path) as process:
@@ -245,6 +246,7 @@ def test_what_is_identified_is_set_on_a_simulator_all_at_once(tmp_path: Path, ba
         assert simulator.end(signal.SIGINT) == 0
 
 
+@pytest.mark.check
 def test_a_target_that_refuses_keeps_everything_and_the_reason_is_reported(tmp_path: Path, bags: list[Path]) -> None:
     put(bags[::2], tmp_path)
     effects = [name for name in AXIS.effects if name != "quadratic_drag"]
@@ -264,6 +266,7 @@ def test_a_target_that_refuses_keeps_everything_and_the_reason_is_reported(tmp_p
         assert simulator.end(signal.SIGINT) == 0
 
 
+@pytest.mark.check
 def test_a_target_that_is_not_there_is_named(tmp_path: Path, bags: list[Path]) -> None:
     put(bags[::2], tmp_path)
     command = identification(tmp_path, "alone", apply=True, target="/nobody/simulator")

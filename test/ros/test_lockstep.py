@@ -61,6 +61,7 @@ def assert_same_run(one: Samples, other: Samples) -> None:
     assert max(abs(one[s][0]) for s in common) > 0.1
 
 
+@pytest.mark.check
 def test_runs_repeat_bit_for_bit_in_one_process_and_in_two(tmp_path: Path) -> None:
     first = together(tmp_path, "first")
     assert_same_run(first, together(tmp_path, "second"))

@@ -64,6 +64,7 @@ def test_two_tabs_do_not_disturb_each_other(tab: Tab, another: Open, served: Ser
     ended(tab, served)
 
 
+@pytest.mark.check
 def test_what_a_verb_refuses_is_reported(tab: Tab) -> None:
     for name in ("train_steps", "holdout_steps"):
         tab.page.get_by_role("group", name=f"What {name} is for").get_by_label("leave out").check()
@@ -77,6 +78,7 @@ def test_what_a_verb_refuses_is_reported(tab: Tab) -> None:
     tab.see("#message", "mark one 'fit'")
 
 
+@pytest.mark.check
 def test_a_bad_file_says_what_is_wrong_and_a_good_one_is_read(tab: Tab, leaking: Path, tmp_path: Path) -> None:
     (tmp_path / "broken.mcap").write_bytes(b"\x89MCAP0\r\n but nothing else")
     choose(tab, "files", [tmp_path / "broken.mcap"])

@@ -49,6 +49,7 @@ def test_two_clicks_measure_a_difference(tab: Tab, leaking: object) -> None:
     assert float(rows[1][3]) == pytest.approx(moved[1] - moved[0], abs=0.5)
 
 
+@pytest.mark.check
 def test_a_regime_is_shaded_and_a_cut_taken_back(tab: Tab) -> None:
     tab.press("Compare")
     tab.see("#failures-content table.heat")

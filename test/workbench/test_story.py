@@ -20,7 +20,8 @@ def errors(tab: Tab) -> list[float]:
     return [float(found) for found in re.findall(r"([\d.]+) x", words)]
 
 
-@pytest.mark.parametrize("typed_too", [False, pytest.param(True, marks=pytest.mark.check)])
+@pytest.mark.check
+@pytest.mark.parametrize("typed_too", [False, True])
 def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path, typed_too: bool) -> None:
     tab.press("Compare")
     tab.see("#failures-content table.heat", "holdout_steps")

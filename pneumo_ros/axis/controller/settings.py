@@ -11,6 +11,7 @@ from pneumo_ros.control import LAWS, Law, Machine, Reference, ValveInverse
 from pneumo_ros.control.control_file import SMOOTHEST, SMOOTHING
 from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
+from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.uncertainty import SECTION
@@ -23,7 +24,7 @@ _OWN = (
     Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
     Setting("law", "pid", "control law", live=False, choices=tuple(LAWS)),
     PRIORITY,
-    Setting("measurement_timeout", 0.1, "age of the last measurement at which 0 V is sent", "s", 0.001, 60.0),
+    Setting("measurement_timeout", 0.1, "age of the last measurement at which the valve is closed", "s", 0.001, 60.0),
     Setting("max_voltage", 10.0, "limit of the command", "V", 0.0, 100.0),
 )
 _VALVE = (
@@ -75,7 +76,13 @@ def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
 def valve_of(values: Mapping[str, Any]) -> ValveInverse:
     """The inverse of the valve; UsageError if the values do not describe a valve."""
     dead_zone = {name: values[f"dead_zone.{name}"] for name in _DEAD_ZONE}
-    return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=values["max_voltage"])
+    room = values["max_voltage"] - abs(machine_of(values).closed_signal)
+    if room <= 0.0:
+        raise UsageError(
+            f"max_voltage is {values['max_voltage']:g} V, and the valve is closed at "
+            f"{machine_of(values).closed_signal:g} V: there is no room to open it"
+        )
+    return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=room)
 
 
 def reference_of(values: Mapping[str, Any]) -> tuple[Reference, bool] | None:

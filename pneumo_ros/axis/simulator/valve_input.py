@@ -13,17 +13,26 @@ class ValveInput:
     `accept` may be called by another thread than `hold`.
     """
 
-    def __init__(self, max_voltage: float, timeout: float) -> None:
-        """Clip at +-`max_voltage` [V]; the valve closes `timeout` [s, simulated] after the last command, 0: never."""
-        self.max_voltage, self.timeout = max_voltage, timeout
+    def __init__(self, max_voltage: float, timeout: float, closed: float = 0.0) -> None:
+        """Clip at +-`max_voltage` [V]; the valve closes `timeout` [s, simulated] after the last command, 0: never.
+
+        `closed` [V]: the signal that closes it.
+        """
+        self.max_voltage, self.timeout, self.closed = max_voltage, timeout, closed
         self.accepted = self.refused = self.clipped = self.expired = 0
         self._arrived: deque[tuple[int, float]] = deque(maxlen=10_000)
         self.reset()
 
     def reset(self) -> None:
         """Valve closed, no command yet; the counts go on."""
-        self.voltage, self._since = 0.0, -math.inf
+        self.voltage, self._since = self.closed, -math.inf
         self._arrived.clear()
+
+    def close_at(self, signal: float) -> None:
+        """The machine is another one, whose valve is closed at `signal` [V]: a closed valve stays closed."""
+        if self.voltage == self.closed:
+            self.voltage = signal
+        self.closed = signal
 
     def accept(self, voltage: float, arrival: int) -> bool:
         """Take a command [V] that arrived at `arrival` [ns]; False if it is not finite. Both it and clipping count."""
@@ -55,12 +64,12 @@ class ValveInput:
             index = min(max(math.ceil((arrival - begin) / part), 0), parts)
             held[index:] = voltage
             self.voltage, self._since = voltage, time + index * step
-        if self.timeout > 0.0 and self.voltage != 0.0:
+        if self.timeout > 0.0 and self.voltage != self.closed:
             self._expire(held, time, step)
 
     def _expire(self, held: NDArray[np.float64], time: float, step: float) -> None:
         index = max(math.ceil((self._since + self.timeout - time) / step - 1e-6), 0)
         if index < len(held):
-            held[index:] = 0.0
-            self.voltage = 0.0
+            held[index:] = self.closed
+            self.voltage = self.closed
             self.expired += 1

@@ -46,11 +46,13 @@ def run(options: argparse.Namespace, console: Console) -> int:
     """Tune, write the control file, print the cost and the changes."""
     from pneumo_ros.command.rated_motions import task_for
     from pneumo_ros.control.control_file import Control
+    from pneumo_ros.plant.closed import centred
 
     _check(options)
     start, model = _start(options), chosen_model(options)
     if model.force_driven:
         raise UsageError(f"{model.name} has no valve to control; give a machine file with a section 'chambers'")
+    model = centred(model)  # laws count their voltages from the closed signal
     task = task_for(model, options.amplitude, options.frequency, options.step)
     search = _search(options, start, model, task, console)
     found = Control(start.law, {**start.gains, **search.gains}, start.smoothing)

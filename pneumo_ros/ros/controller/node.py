@@ -163,10 +163,10 @@ class Controller(AxisNode):
         self.send(0.0)
 
     def send(self, voltage: float) -> None:
-        """Send a valve command [V]; none after `finish`."""
+        """Send a valve command, `voltage` [V] counted from the closed signal; none after `finish`."""
         with self._sending:
             if not self._finished:
-                self._publisher.publish(self._message.fill(0, voltage))
+                self._publisher.publish(self._message.fill(0, self.loop.law.machine.closed_signal + voltage))
 
     # --- life -------------------------------------------------------------------------------------------------------
 
@@ -177,10 +177,13 @@ class Controller(AxisNode):
 
     def ready(self) -> str:
         """The law and the joint."""
-        return f"ready: {self._law} moves joint '{self._joint}'; it waits for joint_states"
+        closed = self.loop.law.machine.closed_signal
+        return (
+            f"ready: {self._law} moves joint '{self._joint}', valve closed at {closed:g} V; it waits for joint_states"
+        )
 
     def finish(self) -> None:
-        """0 V is the last command."""
+        """The closed signal is the last command."""
         self.send(0.0)
         with self._sending:
             self._finished = True

@@ -41,7 +41,7 @@ class InterruptedExperimentError(PneumoError):
 
 
 class Experiment(AxisNode):
-    """Answers every joint state with a voltage until all trials are done or a fault occurs; then 0 V."""
+    """Answers every joint state with a voltage until all trials are done or a fault occurs; then closes the valve."""
 
     def __init__(self, effects_files: Iterable[str | Path] = ()) -> None:
         """Raises UsageError for a bad parameter or programme, DataError for a programme that cannot be read."""
@@ -74,7 +74,7 @@ class Experiment(AxisNode):
         if stamp <= self._stamp:  # late or repeated; after a clock was set back, all are
             return
         self._stamp, self._heard = stamp, time.monotonic()
-        volts, failure = 0.0, None
+        volts, failure = 0.0, None  # counted from the closed signal
         if self._begun and not self._over:
             try:
                 volts = self._conduct(stamp, sample.position)
@@ -102,7 +102,7 @@ class Experiment(AxisNode):
 
     def _send(self, volts: float) -> None:
         with self._lock:
-            payload = self._message.fill(0, 0.0 if self._over else volts)
+            payload = self._message.fill(0, self.programme.closed + (0.0 if self._over else volts))
             self._publisher.publish(payload)
             self._takes.command(self._stamp, payload)
 
@@ -146,19 +146,19 @@ class Experiment(AxisNode):
     # --- the end ------------------------------------------------------------------------------------------------------
 
     def _give_up(self, reason: PneumoError) -> None:
-        """0 V, and the end of the process; from any thread."""
+        """The closed signal, and the end of the process; from any thread."""
         with self._lock:
             if self._over:
                 return
             self._over = True
-            self._publisher.publish(self._message.fill(0, 0.0))
+            self._publisher.publish(self._message.fill(0, self.programme.closed))
         self.fail(reason)
 
     def _abandoned(self) -> None:
         self._give_up(InterruptedExperimentError("the command that started the experiment has ended"))
 
     def finish(self) -> None:
-        """0 V is the last command; the recordings are closed, and a summary is written beside them."""
+        """The closed signal is the last command; the recordings are closed, and a summary is written beside them."""
         if not self._over:
             where = f" during trial {self._where}" if self._begun else " before the first trial"
             self._give_up(InterruptedExperimentError(f"interrupted{where}"))

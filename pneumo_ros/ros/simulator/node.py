@@ -20,6 +20,7 @@ from pneumo_ros.axis.simulator.stamps import WallStamps
 from pneumo_ros.axis.simulator.valve_input import ValveInput
 from pneumo_ros.axis.ticker import Ticker
 from pneumo_ros.errors import NumericalError
+from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.records.contract import COMMAND
 from pneumo_ros.ros import readers
 from pneumo_ros.ros.description import Description, describe
@@ -75,7 +76,7 @@ class Simulator(AxisNode):
         model.state(**initial_state(values.values()))
         for sentence in model.cautions():
             self.get_logger().warning(sentence)
-        valve = ValveInput(values["max_voltage"], values["command_timeout"])
+        valve = ValveInput(values["max_voltage"], values["command_timeout"], closed_signal(model))
         sensors = Sensors(seed=values["seed"])
         return Simulation(model, valve, sensors, rate=values["publish_rate"], step=values["step"])
 

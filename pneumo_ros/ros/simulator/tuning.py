@@ -13,6 +13,7 @@ from pneumo_ros.axis.simulator.settings import EFFECTS, machine_settings
 from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.ros.parameters import Parameters, Values
 
 _SENSORS = (
@@ -81,6 +82,7 @@ class Tuning:
     def _swap(self, model: Model) -> None:
         with self._lock:
             self._simulation.replace(model)
+            self._simulation.valve.close_at(closed_signal(model))
         for sentence in model.cautions():
             self._logger.warning(sentence)
         self._adopted()
