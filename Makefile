@@ -1,6 +1,7 @@
 # make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
 # make test   lint, types and tests: less than 8 minutes on two cores
 # make check  what takes longer and breaks rarely: make slow, supply and pythons; WITHIN=600 stops after so many seconds
+# make docs   the manual as HTML, into .cache/manual: pages of docs/, and a reference made from the code
 # make bench  print the tables of benchmarks/
 # make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
 # make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
@@ -50,7 +51,7 @@ ifneq ($(REAL),)
 export PNEUMO_REAL := $(shell cd "$(REAL)" && pwd)
 endif
 
-.PHONY: help demo test check slow bench fuzz chaos endurance supply pythons clean
+.PHONY: help demo test check docs slow bench fuzz chaos endurance supply pythons clean
 .DELETE_ON_ERROR:
 
 help:
@@ -73,6 +74,11 @@ test: $(READY) | .cache/tmp
 	@tools/timed "ruff format" $(BIN)/ruff format --check .
 	@tools/timed mypy $(BIN)/mypy
 	@tools/timed tests tools/run_tests $(BIN)/python $(PYTEST)
+
+# The reference, with a picture for each effect, is written anew each time; nothing is fetched; a warning is an error.
+docs: $(READY) | .cache/tmp
+	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(CACHE)/manual
+	@echo "The manual is in .cache/manual/index.html"
 
 check:
 	@tools/check $(MAKE) $(WITHIN)

@@ -28,6 +28,7 @@ DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 FRAMES = ["pandas>=1.5"]  # data frames of results, in Python
 MUJOCO = ["mujoco>=3.1"]  # cylinders on arms
 COMPLETION = ["argcomplete>=3"]  # for the script that pneumo completion writes
+DOCS = ["sphinx>=7", "myst-parser>=2", "furo"]  # the manual
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.3.20", "nbclient>=0.8", "ipykernel>=6"]
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
@@ -85,8 +86,9 @@ setup(
         "mujoco": MUJOCO,
         "completion": COMPLETION,
         "peers": PEERS,
+        "docs": [*DOCS, *FIGURES],
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + MUJOCO + COMPLETION + TEST + DEV + BUILD,
+        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + MUJOCO + COMPLETION + DOCS + TEST + DEV + BUILD,
     },
     entry_points={
         "console_scripts": [

@@ -86,9 +86,13 @@ def _guessed(table: Any) -> Any:
 
 
 def save(recording: Recording, path: str | Path) -> None:
-    """Write a recording as a new rosbag2 folder, which appears whole or not at all; DataError when `path` exists."""
+    """Write a recording as a new rosbag2 folder, which appears whole or not at all; folders above it are made.
+
+    Raises DataError when `path` exists.
+    """
     names = ("position", "velocity", "effort", "pressure_a", "pressure_b", "supply_pressure", "load_cell")
     signals: dict[str, Any] = {name: getattr(recording, name) for name in names}
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
     commands: dict[str, Any] = {"command_time": recording.command_time, "command": recording.command}
     write_recording(
         path, time=recording.time, description=recording.description, start_ns=recording.start_ns,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.sensing import sense
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import PARTS
 from pneumo_ros.shooting.start import start_states
@@ -100,9 +101,13 @@ def played(model: "Model", plan: Plan, progress: "Callable[[float], object]" = l
 
 
 def recorded(model: "Model", plan: Plan, states: Array) -> dict[str, Any]:
-    """The arrays that `write_recording` takes; measured pressures that the model read are recorded again."""
+    """The arrays that `write_recording` takes, position and pressures as the sensors of the model read them.
+
+    Measured pressures that the model read are recorded again.
+    """
     time = np.arange(len(states)) * plan.sample_time
     column = {name: states[:, index] for index, name in enumerate(model.states)}
+    column |= _readings(model, plan, states)
     signals = {"time": time, "position": column["y"], "velocity": column["v"]}
     if model.force_driven:
         held = np.concatenate([plan.held[:: plan.parts], plan.held[-1:]])
@@ -110,3 +115,15 @@ def recorded(model: "Model", plan: Plan, states: Array) -> dict[str, Any]:
         pressures = {f"pressure_{side}": read[f"p_{side}"] for side in "ab" if f"p_{side}" in read}
         return {**signals, "effort": read[DRIVE], **pressures}
     return {**signals, "effort": model.effort(states), "pressure_a": column["p_a"], "pressure_b": column["p_b"]}
+
+
+def _readings(model: "Model", plan: Plan, states: Array) -> dict[str, Array]:
+    """What the sensors read, by the state that each measures; the first reading is that of the first input."""
+    if model.composition.true_sensors:
+        return {}
+    first = np.zeros(1, dtype=np.int64)
+    whole = states[np.newaxis, 1:], states[np.newaxis, :1]
+    later, begin = (
+        sense(model, rows, None, plan.held, first, sample_time=plan.sample_time, parts=plan.parts)[0] for rows in whole
+    )
+    return dict(zip(model.composition.sensed, np.concatenate([begin, later]).T, strict=True))

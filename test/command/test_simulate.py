@@ -135,3 +135,19 @@ def test_a_formula_has_no_pressures(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr().err
     assert "effects of 'sealed' read measured signals (p_a, p_b); give a recording that has them as the input" in said
     assert not Path("run").exists()
+
+
+def test_sensor_effects_are_in_the_recording(tmp_path: Path) -> None:
+    """An offset of a pressure sensor belongs to the machine file: a recording of it has to hold it."""
+    import pneumo_ros as pn
+
+    axis = pn.load_model("axis")
+    off = axis.with_effects(
+        [*axis.effects, "pressure_sensor_offset"],
+        {"pressure_sensor_offset.offset_a": 2e4, "pressure_sensor_offset.offset_b": 0.0},
+    )
+    right, wrong = (pn.simulate(model, "sine:3,1", seconds=1) for model in (axis, off))
+    assert wrong.pressure_a - right.pressure_a == pytest.approx(np.full(1001, 2e4))
+    assert wrong.pressure_b == pytest.approx(right.pressure_b)
+    assert pn.compare(wrong, off).explained
+    assert not pn.compare(wrong, axis).explained
