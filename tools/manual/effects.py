@@ -17,8 +17,8 @@ def page(pictures: Path) -> str:
     pictures.mkdir(parents=True, exist_ok=True)
     parts = [
         "# Effects\n\nEvery effect that a machine file may list: its equation is the code that is compiled. The "
-        "picture shows what it leaves where the default machine lacks it: the residual of each equation over the variable "
-        "that explains most of it (red: more than noise), for a usual size of the effect."
+        "picture shows what it leaves where the default machine lacks it: the residual of each equation over the "
+        "variable that explains most of it (red: more than noise), for a usual size of the effect."
     ]
     found = catalogue(machine)
     for place in ORDER:
