@@ -45,6 +45,10 @@ class Console:
         if not self.quiet:
             print(text, file=sys.stderr, flush=True)
 
+    def next(self, words: str) -> None:
+        """What to type next, after `pneumo`."""
+        self.note(f"Next: {program()} {words}")
+
     def progress(self, title: str) -> "Progress":
         """Progress of long work: `with console.progress("Comparing") as progress: ...; progress(0.4)`."""
         return Progress(title, None if self.quiet else sys.stderr)

@@ -34,6 +34,13 @@ def expanded(named: Sequence[str], console: Console) -> dict[str, bool]:
     return found
 
 
+def unfolded(named: Sequence[str]) -> list[str]:
+    """The recordings named, in order, those of folders by name; one that is named twice stays twice."""
+    from pneumo_ros.records.folders import recordings_in
+
+    return [str(path) for name in named for path in recordings_in(Path(name)) or [Path(name)]]
+
+
 def read_options(options: argparse.Namespace) -> "ReadOptions":
     """--namespace, --joint and --read-as; UsageError for unknown words."""
     from pneumo_ros.reading.read import ReadOptions

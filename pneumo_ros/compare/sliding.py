@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.along import Along
 from pneumo_ros.compare.binned import bin_means, clusters, edges
 from pneumo_ros.equations.bump import Bump
+from pneumo_ros.equations.equations import moving_mass
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -74,7 +75,7 @@ def _windows(model: Model, motion: Along) -> tuple[Array, Array, Array, Array]:
         return bump.apply(bump.phi, signal)
 
     force = mean(motion.seen["drive"] - motion.seen["force"])
-    measured = force - model["piston.mass"] * bump.apply(bump.second, run.position)
+    measured = force - moving_mass(model) * bump.apply(bump.second, run.position)
     away = (np.abs(motion.velocity) > motion.rest_below) & run.measured & (np.abs(run.position) < motion.reach - _EDGE)
     direction = bump.apply(np.ones(bump.width), np.where(away, np.sign(motion.velocity), 0.0))
     sliding = np.abs(direction) > bump.width - 0.5

@@ -18,9 +18,8 @@ from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, follow_each, frame_of, noisier
-from pneumo_ros.diagnose.mechanics import moving_mass
 from pneumo_ros.equations.breakaway import REST
-from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion
+from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion, moving_mass
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run, check_position
 

@@ -24,11 +24,6 @@ _SLOW, _MOVED = 0.004, 3e-4  # m/s and m: the slowest speed of an event is small
 _LAG = 0.025  # s
 
 
-def moving_mass(model: Model) -> float:
-    """Mass that moves with the piston at once [kg]."""
-    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
-
-
 def driven_by_pressures(model: Model, run: Run) -> Run:
     """The run as that of an axis driven by its measured pressures, corrected for the model's pressure sensors."""
     if model.force_driven:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneumo_ros.diagnose.mechanics import moving_mass
 from pneumo_ros.equations.breakaway import REST, Breakaway
+from pneumo_ros.equations.equations import moving_mass
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.plant import Model
 

@@ -37,6 +37,11 @@ def centred(mean: Array) -> Array:
     return np.asarray(0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0)))
 
 
+def moving_mass(model: Model) -> float:
+    """Mass that moves with the piston at once [kg]: its own, and what effects add at rest."""
+    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
+
+
 class Momentum:
     """The momentum equation of a model along states (n, states) of a run; values in N."""
 
@@ -67,7 +72,7 @@ class Momentum:
     def noise_by_position(self, bump: Bump) -> Array:
         """Standard deviation (windows,) by the noise of the position alone, which the moving mass amplifies."""
         by_position = bump.noise([(bump.second, np.ones(len(self.run))), (bump.first, self._steep)])
-        return np.asarray(self.run.noise["position_m"] * self.model["piston.mass"] * by_position)
+        return np.asarray(self.run.noise["position_m"] * moving_mass(self.model) * by_position)
 
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""

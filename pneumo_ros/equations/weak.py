@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.bump import Bump
-from pneumo_ros.equations.equations import Chamber, Momentum, centred, measured_throughout
+from pneumo_ros.equations.equations import Chamber, Momentum, centred, measured_throughout, moving_mass
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run, check_position
@@ -65,7 +65,7 @@ def force_error(model: Model, run: Run) -> float:
     """
     bump = Bump.of(FORCE_WINDOW, run.sample_time)
     states, claimed = _along(model, run)
-    mass = model["piston.mass"]
+    mass = moving_mass(model)
     drive = np.append(run.held, run.held[-1]) if model.force_driven else model.outputs(states)["drive"]
     error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
     inside = measured_throughout(run, bump)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.equations.equations import moving_mass
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
@@ -68,7 +69,7 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
     held = run.held[starts]
     drive, load, swing = _forces(model, position, velocity, a, b, run.sampled(model.inputs)[starts])
     noise = _noise(model, run, width)
-    friction = drive - load - model["piston.mass"] * acceleration
+    friction = drive - load - moving_mass(model) * acceleration
     span = width * run.sample_time
     refused = _reasons(model, run, rows, position, velocity, acceleration * span, swing * span, drive - load)
     return [
@@ -122,7 +123,7 @@ def _forces(
 def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
     """Deviations by sensor noise of a window's friction force [N], velocity [m/s] and pressure slope [Pa/s]."""
     noise, span = run.noise, width * run.sample_time
-    parts = [model["piston.mass"] * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
+    parts = [moving_mass(model) * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
     if not model.force_driven:
         for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
             parts.append(model[f"piston.{area}"] * noise[name] * np.sqrt(1.2 / width))

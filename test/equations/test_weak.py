@@ -200,3 +200,14 @@ def test_every_window_is_summed_by_itself(samples: int, more: int) -> None:
 def test_windows_lie_a_quarter_of_their_width_apart() -> None:
     model, _, run = own("steps", seconds=5.0)
     np.testing.assert_allclose(np.diff(equation_residuals(model, run)["chamber_a"].time), 0.05, rtol=1e-9)
+
+
+def test_the_noise_of_a_force_is_that_of_all_the_mass_that_moves() -> None:
+    """A payload amplifies the noise of the position as the piston's own mass does: the true machine is explained."""
+    import pneumo_ros as pn
+
+    axis = pn.load_model("axis")
+    heavy = axis.with_effects([*axis.effects, "payload_mass"], {"payload_mass.mass_added": 15.0})
+    noise = {"position": 5e-6, "pressure_a": 200.0, "pressure_b": 200.0}
+    found = pn.compare(pn.simulate(heavy, "sine:4,1.3", seconds=5, noise=noise), heavy)
+    assert found.detail.equations["momentum"].ratio_to_noise < 1.2  # 4 with that of the piston's 5 kg alone

@@ -6,6 +6,7 @@ BAG... without --holdout. Exit code 1 says that the recordings do not determine 
 """
 
 import argparse
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,6 +70,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.say(text(result))
     save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
     console.note(f"Machine file written to {options.out}")
+    judged = shlex.join((options.holdout or options.bags)[:2])
+    own = "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
+    console.next(f"compare {judged} --model {shlex.quote(options.out)}{own}")
     console.json(result)
     report.publish(console, lambda origin: _report(found, result, origin))
     return 1 if undetermined(result) else 0

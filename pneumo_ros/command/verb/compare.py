@@ -7,11 +7,12 @@ one fails, the regimes, the variables and the intervals that hold most of the er
 
 import argparse
 import io
+import shlex
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, plain
-from pneumo_ros.command.recordings import read_named
+from pneumo_ros.command.recordings import read_named, unfolded
 from pneumo_ros.command.refitting import add_refit, refit_text, refitted
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.compare.findings import findings, verdict
@@ -35,7 +36,9 @@ EXAMPLES = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """BAG..., --horizon, how to read recordings, the refit, the report and the common options."""
-    parser.add_argument("bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files")
+    parser.add_argument(
+        "bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files, or folders of these"
+    )
     parser.add_argument("--horizon", type=float, default=1.0, metavar="S", help="length of the windows (default: 1 s)")
     add_recordings(parser)
     add_refit(parser)
@@ -52,6 +55,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
     if not options.horizon > 0.0:
         raise UsageError(f"--horizon {options.horizon:g} is not a length of time; give seconds, such as --horizon 1")
+    options.bags, options.fit = unfolded(options.bags), options.fit and unfolded(options.fit)
     report = prepare_report(options)
     if options.series:
         check_writable(options.series)
@@ -66,7 +70,21 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if options.series:
         _write_series(comparison, options.series)
     report.publish(console, lambda origin: _report(result, comparison, model, origin))
+    console.next(_next(options, model, comparison))
     return 0
+
+
+def _next(options: argparse.Namespace, model: "Model", comparison: "Comparison") -> str:
+    """Look for what is missing where an equation fails; else use the model."""
+    machine = options.out or options.model
+    named = "" if machine == "axis" else f" --model {shlex.quote(machine)}"
+    named += "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
+    fails = any(one.explained_by_noise is False for one in comparison.equations.values())
+    if fails and len(options.bags) > 1:
+        return f"diagnose {shlex.join(options.bags[:-1])} --holdout {shlex.quote(options.bags[-1])}{named}"
+    if fails:
+        return f"diagnose OTHER_BAG... --holdout {shlex.quote(options.bags[0])}{named}"
+    return f"effects{named}" if model.force_driven else f"tune{named} --out my_cascade.yaml"
 
 
 def _write_series(comparison: "Comparison", path: str) -> None:

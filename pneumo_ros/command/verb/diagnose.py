@@ -13,6 +13,7 @@ explains.
 
 import argparse
 import math
+import shlex
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -89,6 +90,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if options.out:
         save_model(whole(given, outcome.model), options.out, overwrite=options.overwrite)
         console.note(f"{_what(outcome)} written to {options.out}; see also: {_next(options)}")
+    else:
+        named = [*options.bags, "--holdout", *options.holdout]
+        console.next(f"diagnose {shlex.join(named)} --model {options.model} --out better.yaml   # the machine file")
     console.json(result)
     report.publish(console, lambda origin: _report(outcome, result, origin))
     if outcome.interrupted:

@@ -42,6 +42,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.say(explanation(chosen[0], model))
     else:
         raise UsageError(f"{unknown_name('effect', options.name, effects)} (effects of your own: --effects FILE.py)")
+    console.next("effects NAME" if options.name is None else f"add {options.name} BAG... --out more.yaml")
     console.json({"schema_version": 1, "model": model.name, "effects": [record(effect, model) for effect in chosen]})
     return 0
 

@@ -11,6 +11,7 @@ same command continues after an interruption, and later examines only new campai
 """
 
 import argparse
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         | {"provenance": report.origin()}
     )
     console.say(text(result))
+    console.next(f"fleet {shlex.quote(str(options.folder))} --report fleet.html   # every machine over time")
     console.json(result)
     report.publish(console, lambda origin: fleet_report(result, origin))
     return int(any(one["problem"] for one in examined))

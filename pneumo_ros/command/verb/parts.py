@@ -46,6 +46,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     chosen = [shelf.find(name)] if name else list(shelf.parts.values())
     text = shown(chosen[0]) if name else markdown(chosen) if options.markdown else listing(chosen)
     console.say(text)
+    console.next("new --cylinder iso15552-32-250 --valve NAME --supply 6barg --mass 10 --out my.yaml")
     console.json({"schema_version": 1, "parts": [record(part) for part in chosen]})
     return 0
 

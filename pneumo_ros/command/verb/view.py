@@ -5,6 +5,7 @@ BAG may be a folder of recordings. Exit code 3 when none of them can be read.
 
 import argparse
 import io
+import shlex
 import shutil
 import sys
 from typing import TYPE_CHECKING, Any
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.say(text(recording))
     if not found:
         raise DataError(problems[-1])
+    console.next(f"compare {shlex.join(options.bags[:2])}")
     console.json({"schema_version": 1, "recordings": found, "passed_over": problems})
     return 0
 
