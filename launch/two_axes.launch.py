@@ -13,13 +13,15 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 SHARE = FindPackageShare("pneumo_ros")
-DEFAULT_MACHINE = PathJoinSubstitution([SHARE, "config", "axis.yaml"])
+LIFT_MACHINE = PathJoinSubstitution([SHARE, "config", "arm", "lift.yaml"])  # with the weight that it lifts
+REACH_MACHINE = PathJoinSubstitution([SHARE, "config", "arm", "reach.yaml"])
+CARRYING = {"lift": {"initial.p_a": 3.33e5, "initial.p_b": 3.0e5}, "reach": {}}  # Pa: simulated, it hangs in its air
 DEFAULT_CONTROL = PathJoinSubstitution([SHARE, "config", "control", "pid.yaml"])
 AXES = ("lift", "reach")  # namespaces; joints are lift_piston and reach_piston
 
 ARGUMENTS = [
-    DeclareLaunchArgument("lift_params", default_value=DEFAULT_MACHINE, description="machine file of the lift"),
-    DeclareLaunchArgument("reach_params", default_value=DEFAULT_MACHINE, description="machine file of the reach"),
+    DeclareLaunchArgument("lift_params", default_value=LIFT_MACHINE, description="machine file of the lift"),
+    DeclareLaunchArgument("reach_params", default_value=REACH_MACHINE, description="machine file of the reach"),
     DeclareLaunchArgument("lift_control", default_value=DEFAULT_CONTROL, description="control file of the lift"),
     DeclareLaunchArgument("reach_control", default_value=DEFAULT_CONTROL, description="control file of the reach"),
     DeclareLaunchArgument("simulate", default_value="true", description="simulate both; false: there is a real arm"),
@@ -34,7 +36,7 @@ def axis(name: str, control: LaunchConfiguration, params: LaunchConfiguration) -
         package="pneumo_ros",
         executable="simulator",
         namespace=name,
-        parameters=parameters,
+        parameters=[params, {"joint_name": f"{name}_piston", **CARRYING[name]}],
         output="screen",
         condition=IfCondition(LaunchConfiguration("simulate")),
     )

@@ -72,7 +72,10 @@ def test_the_arm_has_two_axes_with_joints_of_their_own(tmp_path: Path) -> None:
     nodes = commands("two_axes.launch.py", tmp_path, reach_params="reach.yaml", lift_control="mine.yaml")
     assert set(nodes) == {f"{axis}/{name}" for axis in ("lift", "reach") for name in ("simulator", "controller")}
     for name, command in nodes.items():
-        assert parameters(command) == {"joint_name": f"{name.partition('/')[0]}_piston"}
+        given = {"joint_name": f"{name.partition('/')[0]}_piston"}
+        carrying = {"initial.p_a": 3.33e5, "initial.p_b": 3e5} if name == "lift/simulator" else {}
+        assert parameters(command) == given | carrying
+    assert str(ROOT / "config" / "arm" / "lift.yaml") in nodes["lift/simulator"]
     assert "reach.yaml" in nodes["reach/controller"]
     assert "reach.yaml" not in nodes["lift/controller"]
     assert [name for name, command in nodes.items() if "mine.yaml" in command] == ["lift/controller"]
