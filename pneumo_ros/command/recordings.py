@@ -82,6 +82,7 @@ def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model
     elif found.inputs != model.inputs:
         taken = "measured, in place of" if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
         console.note(f"The supply pressure is {taken} air.supply_pressure")
+    console.note(inputs.judged(found, runs))
     return found
 
 

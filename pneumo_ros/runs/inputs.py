@@ -45,3 +45,24 @@ def check_inputs(model: Model, run: Run) -> None:
         f"{run.name} has no {topics}, which effect {' and '.join(readers)} of '{model.name}' reads as "
         f"{' and '.join(absent)}; record also {topics}, or leave {' and '.join(readers)} out"
     )
+
+
+def judged(model: Model, runs: Sequence[Run]) -> str:
+    """Which equations these runs judge, which they do not, and the sensor that would add them: one line."""
+    found, lacking = [], []
+    if model.imposed and not model.force_driven:
+        lacking.append("momentum (a load_cell would add it)")
+    else:
+        found.append("momentum")
+    if model.force_driven:
+        some = all(run.pressure_a is not None or "p_a" in run.further for run in runs)
+        needed = "valve/command" if some else "valve/command and both chamber pressures"
+        lacking.append(f"chambers and valve ({needed}, and a machine file with chambers, would add them)")
+    else:
+        found += ["chamber a", "chamber b"]
+        if "measured_supply" not in measured_inputs(runs):
+            lacking.append("a sagging supply by itself (supply/pressure would add it)")
+    if "load_force" not in measured_inputs(runs) and not model.imposed:
+        lacking.append("load apart from friction (a load_cell would add it)")
+    said = f"Judged: {', '.join(found)}."
+    return f"{said} Not judged: {'; '.join(lacking)}." if lacking else said

@@ -163,3 +163,20 @@ def test_the_mechanics_of_a_machine_with_chambers_read_its_pressures() -> None:
     inputs = driven_by_pressures(axis, run).inputs(model.inputs)
     assert inputs[:, 0] == pytest.approx(4.1e-4 * inputs[:, 1] - 3e-4 * inputs[:, 2], rel=1e-9)
     assert inputs[::PARTS, 1] == pytest.approx(p_a[:-1], abs=200.0)
+
+
+def test_one_line_says_what_is_judged_and_which_sensor_would_add_the_rest() -> None:
+    import pneumo_ros as pn
+    from pneumo_ros.reading.read import run_of
+    from pneumo_ros.runs.inputs import judged
+
+    axis = pn.load_model("axis")
+    recording = pn.simulate(axis, "sine:3,1", seconds=1)
+    said = judged(axis, [run_of(recording, axis)[0]])
+    assert said.startswith("Judged: momentum, chamber a, chamber b. Not judged: ")
+    assert "supply/pressure would add it" in said
+    assert "a load_cell would add it" in said
+    emps = pn.load_model("emps")
+    driven = pn.simulate(emps, "sine:100,1", seconds=1)
+    said = judged(emps, [run_of(driven, emps)[0]])
+    assert said.startswith("Judged: momentum. Not judged: chambers and valve (valve/command and both chamber pressures")
