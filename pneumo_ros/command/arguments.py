@@ -56,7 +56,10 @@ def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None
         "closed=5V: the command that closes the valve",
     )
     parser.add_argument(
-        "--rig", metavar="RIG.yaml", help="machine and wiring of the rig, as `pneumo rig check` writes them"
+        "--rig",
+        dest="rig_file",
+        metavar="RIG.yaml",
+        help="machine and wiring of the rig, as `pneumo rig check` writes them",
     )
     if cut:
         parser.add_argument(

@@ -26,20 +26,20 @@ def refitted(
     options: argparse.Namespace, console: Console, model: "Model", runs: "list[Run]"
 ) -> "tuple[Model, dict[str, Any] | None]":
     """The model as the options want it, and the JSON of its refit; UsageError for --out without a refit."""
+    if options.out and not (options.refit or options.fit):
+        raise UsageError("--out writes the refitted machine file; add --refit, or --fit BAG...")
+    if options.out:
+        check_writable(options.out)
     given, model = model, measuring(model, runs, console)
     if not (options.refit or options.fit):
-        if options.out:
-            raise UsageError("--out writes the refitted machine file; add --refit, or --fit BAG...")
         return model, None
     from pneumo_ros.compare.moved import refit_dict
     from pneumo_ros.plant import save_model
     from pneumo_ros.plant.mechanical import whole
     from pneumo_ros.shooting.refit import refit
 
-    if options.out:
-        check_writable(options.out)
     used = read_named(options.fit, options, console, model.measuring(())) if options.fit else runs
-    model = measuring(model, [*runs, *used], console)
+    model = measuring(model, [*runs, *used], console) if options.fit else model
     with console.progress("Refitting") as progress:
         found = refit(model, used, progress=lambda share, _: progress(share))
     if options.out:

@@ -15,7 +15,7 @@ def apply_rig(options: argparse.Namespace) -> None:
 
     Raises DataError when it cannot be read, UsageError when it is invalid or says something else than an option.
     """
-    path = getattr(options, "rig", None)
+    path = getattr(options, "rig_file", None)
     if not path:
         return
     given = read_rig(path)

@@ -42,7 +42,7 @@ def test_the_mechanism_has_the_load(axis: Model) -> None:
 
 
 def test_it_gives_no_energy_from_nothing(axis: Model) -> None:
-    """Valve closed, any mass, step, start and pressures: gas and motion together never gain more than rounding."""
+    """Valve closed, any mass, step, start and pressures: gas and motion gain at most a hundred-thousandth."""
     random, one, worst = np.random.default_rng(7), Cylinder(axis), 0.0
     for _ in range(150):
         mass, dt = 10.0 ** random.uniform(-0.5, 2.0), 10.0 ** random.uniform(-3.3, -2.0)
