@@ -1,8 +1,9 @@
 # make demo   see the axis run on ROS 2, and find what a recorded machine hides; SEED=7 repeats one
-# make test   lint, types and tests: less than 8 minutes on two cores
+# make test   lint, types and tests: a quarter of an hour on two cores
 # make check  what takes longer and breaks rarely: make slow, supply and pythons; WITHIN=600 stops after so many seconds
 # make docs   the manual as HTML, into .cache/manual: pages of docs/, and a reference made from the code
 # make bench  print the tables of benchmarks/
+# make paper  the paper reproduced: its tables, Fig. 4 and Fig. 6, on recordings of the second simulator
 # make fuzz   bad input for every parser, 100,000 times; FUZZ="--inputs 5000" for less
 # make chaos  300 faults in running nodes, at random; CHAOS="--minutes 5 --seed 2" for others
 # make endurance  24 h of simulated and 20 min of real time; ENDURANCE="--hours 1 --minutes 2" for less
@@ -51,7 +52,7 @@ ifneq ($(REAL),)
 export PNEUMO_REAL := $(shell cd "$(REAL)" && pwd)
 endif
 
-.PHONY: help demo test check docs slow bench fuzz chaos endurance supply pythons clean
+.PHONY: help demo test check docs slow bench paper fuzz chaos endurance supply pythons clean
 .DELETE_ON_ERROR:
 
 help:
@@ -88,6 +89,9 @@ slow: $(READY) | .cache/tmp
 
 bench: $(READY) | .cache/tmp
 	@set -e; for table in benchmarks/bench_*.py; do $(BIN)/python "$$table"; done
+
+paper: $(READY) | .cache/tmp
+	@$(BIN)/python -m benchmarks.paper $(if $(SEED),--seed $(SEED))
 
 fuzz: $(READY) | .cache/tmp
 	$(BIN)/python benchmarks/fuzz.py $(FUZZ)

@@ -20,6 +20,7 @@ ROS_WHEELS = [
     "ros-kilted-trajectory-msgs",
     "ros-rosgraph-msgs",
 ]
+NEEDED = ["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap", "apsw", "lz4", "zstandard", "threadpoolctl>=3"]
 REPORT = ["plotly>=5"]  # the pages that --report writes
 FIGURES = ["matplotlib>=3.5"]  # the files that --figures writes
 WORKBENCH = ["dash>=4", *REPORT, "waitress>=2", "rich>=12"]  # the local page, and pneumo view
@@ -27,6 +28,7 @@ PARQUET = ["pyarrow>=14"]  # tables in Parquet, for pneumo import
 DASK = ["distributed>=2024.1"]  # sweeps over a cluster
 FRAMES = ["pandas>=1.5"]  # data frames of results, in Python
 MUJOCO = ["mujoco>=3.1"]  # cylinders on arms
+ARM = ["pin>=2.7"]  # Pinocchio: machine files that name a URDF
 COMPLETION = ["argcomplete>=3"]  # for the script that pneumo completion writes
 DOCS = ["sphinx>=7", "myst-parser>=2", "furo"]  # the manual
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
@@ -34,7 +36,8 @@ TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "fmpy>=0.
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
 BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 
-CONFIG_FILES = ("yaml", "rviz", "xml", "json")  # machines and controllers; layouts of rviz, PlotJuggler and Foxglove
+CONFIG_FILES = ("yaml", "urdf", "rviz", "xml", "json")  # machines, controllers, layouts of other tools
+OPTIONAL = [*REPORT, *FIGURES, *WORKBENCH, *DASK, *PARQUET, *FRAMES, *MUJOCO, *ARM, *COMPLETION]
 
 
 def files(folder: str, pattern: str) -> list[str]:
@@ -74,7 +77,7 @@ setup(
     ],
     zip_safe=False,
     python_requires=">=3.10",
-    install_requires=["numpy", "scipy", "numba", "pyyaml", "rosbags>=0.11", "mcap", "apsw", "lz4", "zstandard"],
+    install_requires=NEEDED,
     extras_require={
         "ros": ROS_WHEELS,
         "report": REPORT,
@@ -84,11 +87,12 @@ setup(
         "parquet": PARQUET,
         "frames": FRAMES,
         "mujoco": MUJOCO,
+        "arm": ARM,
         "completion": COMPLETION,
         "peers": PEERS,
         "docs": [*DOCS, *FIGURES],
         "test": TEST,
-        "dev": REPORT + FIGURES + WORKBENCH + DASK + PARQUET + FRAMES + MUJOCO + COMPLETION + DOCS + TEST + DEV + BUILD,
+        "dev": [*OPTIONAL, *DOCS, *TEST, *DEV, *BUILD],
     },
     entry_points={
         "console_scripts": [
@@ -100,6 +104,7 @@ setup(
             "player = pneumo_ros.ros.player:main",
             "experiment = pneumo_ros.ros.experiment:main",
             "identification = pneumo_ros.ros.identification:main",
+            "commission = pneumo_ros.ros.commission:main",
         ],
     },
 )

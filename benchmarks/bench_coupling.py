@@ -13,6 +13,7 @@ import time
 import mujoco
 import numpy as np
 
+from pneumo_ros.couple import Cylinder
 from pneumo_ros.couple.mujoco import Cylinders, Mount
 from pneumo_ros.errors import NumericalError
 from pneumo_ros.plant import Model, load_model
@@ -28,6 +29,7 @@ ARMS = {"heavy": (8.0, 4.0), "light": (1.0, 0.5)}  # kg of the links
 SECONDS, FINEST = 4.0, 2e-5
 STEPS = (1e-3, 2e-3, 1e-2)
 VOLTS, HERTZ = 3.0, 0.7
+RUNS, MOVES = 1000, 100  # of the test of passivity, and steps in each
 STIFF = 1e6  # kg: a mass that takes no notice of the force, so that the force is that of the motion as it was
 
 
@@ -69,6 +71,28 @@ def run(arm: tuple[float, float], step: float, explicit: bool) -> tuple[np.ndarr
     return positions, velocities, spent / count
 
 
+def passivity() -> tuple[float, float]:
+    """Largest gain of energy [J] in random runs with the valve closed, and the median energy at their start.
+
+    Random are the mass (0.3 to 100 kg), step (0.5 to 10 ms), position, velocity and both pressures.
+    """
+    random, one, gains, starts = np.random.default_rng(7), Cylinder(load_model("axis")), [0.0], []
+    for _ in range(RUNS):
+        mass, dt = 10.0 ** random.uniform(-0.5, 2.0), 10.0 ** random.uniform(-3.3, -2.0)
+        position, velocity = random.uniform(-0.5, 0.5), random.uniform(-1.0, 1.0)
+        one.reset(position)
+        one.pressurise(*random.uniform(1e5, 7e5, 2))
+        starts.append(one.energy() + 0.5 * mass * velocity**2)
+        for _ in range(MOVES):
+            velocity += dt * one.step(position, velocity, mass, 0.0, dt, 0.0) / mass
+            position += dt * velocity
+            if abs(position) > 0.9:  # m: before the end of the stroke, which MuJoCo's contact would hold
+                break
+            one.follow(position)
+            gains.append(one.energy() + 0.5 * mass * velocity**2 - starts[-1])
+    return max(gains), float(np.median(starts))
+
+
 def main() -> None:
     """Print the table."""
     print("| arm | step | force | rms error | chatter | cylinder's step |")
@@ -87,6 +111,11 @@ def main() -> None:
                 error = 1e3 * math.sqrt(float(np.mean((y - exact[::every][: len(y)]) ** 2)))
                 chatter = 1e3 * math.sqrt(float(np.mean((v - speed[::every][: len(v)]) ** 2)))
                 print(f"{row} {error:.3g} mm | {chatter:.3g} mm/s | {1e6 * cost:.1f} us |")
+    gained, held = passivity()
+    print(
+        f"\nValve closed, {RUNS} random runs of {MOVES} steps: gas and motion together gain at most "
+        f"{1e3 * gained:.2g} mJ of {held:.0f} J that the gas holds in the median."
+    )
 
 
 if __name__ == "__main__":

@@ -132,7 +132,12 @@ def batch(model: Model, loop: Callable[..., np.ndarray], repetitions: int) -> No
 
 def following(axis: Model, repetitions: int) -> None:
     """All effects driven along one motion of 2 s, by 75 parameter vectors: lanes against one after another."""
-    model = axis.with_effects([*axis.effects, *(name for name in Library().names() if name not in axis.effects)])
+    effects = list(axis.effects)
+    for name in Library().names():
+        larger = [*effects, *([] if name in effects else [name])]
+        if axis.with_effects(larger).inputs == axis.inputs:  # it reads no measured signal
+            effects = larger
+    model = axis.with_effects(effects)
     voltage, how = workloads()["steps, stops, reversals"][:4000], {"parts": 2, "step": 5e-4}
     measured, rest = axis.simulate(voltage, start_of(axis), **how)[:, :4], model.state()[4:]
     q = model.values * np.random.default_rng(4).uniform(0.98, 1.02, (VECTORS, len(model.parameters)))

@@ -121,7 +121,7 @@ def divided(runs: Mapping[str, Any]) -> tuple[list[Any], list[Any]]:
 
 def found(outcome: Any) -> dict[str, Any]:
     """The part of an outcome that is kept."""
-    left = outcome.unexplained
+    left, last = outcome.unexplained, outcome.steps[-1] if outcome.steps else None
     return {
         "verdict": outcome.verdict,
         "failing": outcome.failing,
@@ -135,6 +135,7 @@ def found(outcome: Any) -> dict[str, Any]:
             for a in outcome.added
         ],
         "ranking": [(r.effect, r.score.nats, r.holdout_gain, r.objections) for r in outcome.ranking[:RANKED]],
+        "cannot_say": [*({**last.unseen, **last.undecided} if last else ())],
         "course": outcome.waterfall,
         "unexplained": left and {"equation": left.equation, "against": left.against, "rms": left.rms},
     }

@@ -167,6 +167,8 @@ def failures(results: Sequence[Result]) -> str:
         hidden = " + ".join(f"{h['shape']}={h['size']:.3g}" for h in result["hidden"]) or "nothing"
         words = " ".join(map(str, (result[key] for key in ("kind", "seed", "strength", "excitation"))))
         said = f"{result['verdict']}, {', '.join(found) or 'nothing added'}"
+        open_ones = [h["effect"] for h in result["hidden"] if h["effect"] in result.get("cannot_say", ())]
+        said += f", cannot say whether {' or '.join(open_ones)}" if open_ones else ""
         lines.append(f"  {hidden}: {said}   [{words}]")
     if len(lines) > 1:
         lines.append(

@@ -21,7 +21,7 @@ class Signals:
 
     def __init__(self, model: Model, run: Run) -> None:
         self.model, self.run, self.dt = model, run, run.sample_time
-        self.y, self.v, self.p_a, self.p_b = measured_frame(run, False).T
+        self.y, self.v, self.p_a, self.p_b = measured_frame(run, model.chambers).T
         self.sign, self.time = np.sign(self.v), run.time
         self.U = np.append(run.held, run.held[-1])
         self.p_s, self.p_atm = model["air.supply_pressure"], model["air.atmospheric_pressure"]

@@ -66,7 +66,7 @@ def _of_run(model: Model, known: Known, run: Run, noise: Mapping[str, float]) ->
 
 def _claimed(model: Model, run: Run) -> Array:
     """Derivatives of v, p_a and p_b (n, 3) that the model claims along the measured signals."""
-    rates = driven(model, measured_frame(run, False), run)[1]
+    rates = driven(model, measured_frame(run, model.chambers), run)[1]
     return np.asarray(rates[:, [model.states.index(name) for name in ("v", "p_a", "p_b")]])
 
 

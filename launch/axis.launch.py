@@ -19,6 +19,9 @@ ARGUMENTS = [
     DeclareLaunchArgument("namespace", default_value="", description="namespace of this cylinder; empty for none"),
     DeclareLaunchArgument("params", default_value=DEFAULT_MACHINE, description="machine file, also read by pneumo"),
     DeclareLaunchArgument("control", default_value=DEFAULT_CONTROL, description="control file: law and gains"),
+    DeclareLaunchArgument(
+        "rig_file", default_value="", description="rig file of a rig of your own: wiring, closed signal, limits"
+    ),
     DeclareLaunchArgument("record", default_value="", description="folder to record into; empty records nothing"),
 ]
 
@@ -35,7 +38,11 @@ def generate_launch_description() -> LaunchDescription:
         package="pneumo_ros",
         executable="controller",
         namespace=namespace,
-        parameters=[LaunchConfiguration("control"), *machine],
+        parameters=[
+            LaunchConfiguration("control"),
+            *machine,
+            {"rig": ParameterValue(LaunchConfiguration("rig_file"), value_type=str)},
+        ],
         output="screen",
     )
     recorder = Node(

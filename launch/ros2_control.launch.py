@@ -28,6 +28,9 @@ ARGUMENTS = [
     ),
     DeclareLaunchArgument("params", default_value=DEFAULT_MACHINE, description="machine file, also read by pneumo"),
     DeclareLaunchArgument("control", default_value=DEFAULT_CONTROL, description="control file: law and gains"),
+    DeclareLaunchArgument(
+        "rig_file", default_value="", description="rig file of a rig of your own: wiring, closed signal, limits"
+    ),
     DeclareLaunchArgument("stroke", default_value="2.0", description="stroke of that machine [m], for the URDF"),
     DeclareLaunchArgument("simulate", default_value="true", description="simulate the plant; false: there is a rig"),
     DeclareLaunchArgument(
@@ -61,7 +64,11 @@ def generate_launch_description() -> LaunchDescription:
         package="pneumo_ros",
         executable="controller",
         namespace=namespace,
-        parameters=[LaunchConfiguration("control"), machine],
+        parameters=[
+            LaunchConfiguration("control"),
+            machine,
+            {"rig": ParameterValue(LaunchConfiguration("rig_file"), value_type=str)},
+        ],
         output="screen",
     )
     publisher = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[description])

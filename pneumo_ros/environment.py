@@ -33,6 +33,7 @@ LIBRARIES = {
     "apsw": ("apsw", None),  # these three come with rosbags and mcap
     "lz4": ("lz4", None),
     "zstandard": ("zstandard", None),
+    "threadpoolctl": ("threadpoolctl", "python3-threadpoolctl"),  # saves processor time only
     "plotly": ("plotly", "python3-plotly"),  # for reports only, and so is the next
     "matplotlib": ("matplotlib", "python3-matplotlib"),
     "dash": ("dash", None),  # for the workbench only, and so is the next
@@ -43,8 +44,10 @@ LIBRARIES = {
     "argcomplete": ("argcomplete", "python3-argcomplete"),  # for the shell's completion only
     "pandas": ("pandas", "python3-pandas"),  # for to_dataframe only
     "mujoco": ("mujoco", None),  # for cylinders on arms of MuJoCo only
+    "pinocchio": ("pin", None),  # for machine files that name a URDF only
 }
 OPTIONAL = (
+    "threadpoolctl",
     "plotly",
     "matplotlib",
     "dash",
@@ -55,6 +58,7 @@ OPTIONAL = (
     "argcomplete",
     "pandas",
     "mujoco",
+    "pinocchio",
 )
 NEEDED = tuple(name for name in LIBRARIES if name not in OPTIONAL)
 DOMAINS = range(1, 102)  # ports of higher domains overlap those that the system assigns to other programs

@@ -11,7 +11,7 @@ from hiding import environment_without
 from pneumo_ros.environment import Domain, library_advice, missing, require_ros, ros_advice
 from pneumo_ros.errors import UsageError
 
-NODES = ("simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
+NODES = ("simulator", "controller", "axis", "recorder", "player", "experiment", "identification", "commission")
 
 
 def test_nothing_is_missing_here() -> None:

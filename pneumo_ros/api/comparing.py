@@ -9,7 +9,7 @@ from pneumo_ros.api.result import Result, Row, telling
 from pneumo_ros.command.console import plain
 from pneumo_ros.command.verb.compare import comparison_text, equations_text, findings_text
 from pneumo_ros.compare import compare as judging
-from pneumo_ros.compare.findings import findings, verdict
+from pneumo_ros.compare.findings import explained, verdict
 from pneumo_ros.compare.moved import refit_dict
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
@@ -31,8 +31,8 @@ class ComparisonResult(Result):
 
     @property
     def explained(self) -> bool:
-        """Whether sensor noise explains every equation and every prediction."""
-        return all(one.level != "bad" for one in findings(self.as_dict()))
+        """Whether sensor noise explains every equation and the typical prediction."""
+        return explained(self.as_dict())
 
     def rows(self) -> list[Row]:
         """A row for each run and signal: rms over the windows, largest error and noise in `unit`, and their ratio."""
@@ -64,18 +64,19 @@ def compare(
     recordings: Given,
     model: Machine = "axis",
     *,
-    horizon: float = 1.0,
+    horizon: float | None = None,
     fit: Given | None = None,
     progress: Progress | None = None,
 ) -> ComparisonResult:
     """Compare a model with recordings: errors per run and signal, and the equations that fail.
 
     `recordings`: paths, folders of recordings, or what `read` returns; one or several. `model`: a machine file, the
-    name of a shipped one, or a Model. Each run is predicted in windows of `horizon` [s]. `fit`: recordings
-    to which the parameters of the model are fitted first. Raises UsageError for a horizon that is no time and for
-    recordings that hold no window of it, DataError for a recording that cannot be used.
+    name of a shipped one, or a Model. Each run is predicted in windows of `horizon` [s], by default of 1 s,
+    or less where a run is shorter. `fit`: recordings to which the parameters of the model are fitted first. Raises
+    UsageError for a horizon that is no time and for recordings that hold no window of it, DataError for a recording
+    that cannot be used.
     """
-    if not horizon > 0.0:
+    if horizon is not None and not horizon > 0.0:
         raise UsageError(f"horizon is {horizon:g}; it takes seconds above 0, such as horizon=1.0")
     tell, plant = telling(progress), machine(model)
     given = runs_of(recordings, plant)

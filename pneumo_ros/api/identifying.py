@@ -11,7 +11,9 @@ from pneumo_ros.command.identification_text import headline, text
 from pneumo_ros.identify import campaign
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
+from pneumo_ros.runs.inputs import check_driven, measuring
 
 
 @dataclass(frozen=True)
@@ -52,9 +54,12 @@ def identify(recordings: Given, model: Machine = "axis", *, progress: Progress |
     """Identify friction and flow coefficients from constant-voltage `recordings`, with 95 % intervals.
 
     Arguments as for `compare`. Raises UsageError for a model without LuGre friction, DataError when the recordings
-    hold too few stretches of constant velocity.
+    hold too few stretches of constant velocity or nothing that drives the piston.
     """
     plant = machine(model)
-    given = runs_of(recordings, plant, mechanics=False)
-    found = campaign.identify(plant, given.runs, progress=telling(progress))
-    return IdentificationResult(plain(summary(found, given.runs)), given.notes, given.paths, found.model, found)
+    given = runs_of(recordings, plant)
+    chosen = measuring(plant, given.runs)
+    check_driven(chosen, given.runs)
+    found = campaign.identify(chosen, given.runs, progress=telling(progress))
+    after = whole(plant, found.model)
+    return IdentificationResult(plain(summary(found, given.runs)), given.notes, given.paths, after, found)

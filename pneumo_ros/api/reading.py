@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import load_model
 from pneumo_ros.reading.read import ATMOSPHERE, ReadOptions, corrected_recording
+from pneumo_ros.reading.rig_file import read_rig, reading_of
 from pneumo_ros.records import Recording, write_recording
 from pneumo_ros.records.corrections import parse_words
 from pneumo_ros.records.folders import recordings_in
@@ -20,19 +22,28 @@ def read(
     joint: str | None = None,
     read_as: str = "",
     atmosphere: float = ATMOSPHERE,
+    rig: str | Path | None = None,
 ) -> Recording:
     """The recording at `path` - a rosbag2 folder, an .mcap or .db3 file - as arrays in SI units.
 
     `namespace` of the axis and `joint`, where a recording holds several. `read_as`: words, separated by commas, for
     recordings in other units or wired otherwise, such as "bar,gauge" (see `pneumo compare --help`); `atmosphere` [Pa]
-    is added to gauge pressures. Raises DataError when it cannot be read, UsageError for unknown words and for a folder
-    of recordings.
+    is added to gauge pressures. `rig`: a rig file that says all that instead, as `pneumo rig check` writes it, with a
+    machine file. Raises DataError when one of them cannot be read, UsageError for unknown words, for a rig file beside
+    other words, and for a folder of recordings.
     """
     if inside := recordings_in(Path(path)):
         raise UsageError(
             f"{path} holds {len(inside)} recordings; read one, such as {inside[0]}, or give the folder to pn.compare, "
             "pn.diagnose, pn.identify or pn.add"
         )
+    if rig is not None:
+        if read_as or namespace or joint:
+            raise UsageError(f"the rig file {rig} says how to read; leave read_as, namespace and joint out")
+        said = read_rig(str(rig))
+        machine = load_model(said.machine or "axis")
+        air = machine.parameters.get("air.atmospheric_pressure", atmosphere)
+        return corrected_recording(path, reading_of(said, machine), air)
     return corrected_recording(path, ReadOptions(namespace, joint, parse_words(read_as)), atmosphere)
 
 
@@ -90,10 +101,11 @@ def save(recording: Recording, path: str | Path) -> None:
 
     Raises DataError when `path` exists.
     """
-    names = ("position", "velocity", "effort", "pressure_a", "pressure_b", "supply_pressure", "load_cell")
+    names = ("position", "velocity", "effort", "pressure_a", "pressure_b", "supply_pressure", "load_cell", "further")
     signals: dict[str, Any] = {name: getattr(recording, name) for name in names}
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     commands: dict[str, Any] = {"command_time": recording.command_time, "command": recording.command}
+    commands |= {"command_b_time": recording.command_b_time, "command_b": recording.command_b}
     write_recording(
         path, time=recording.time, description=recording.description, start_ns=recording.start_ns,
         joint_name=recording.joint_name, namespace=recording.namespace, **signals, **commands,

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from pneumo_ros.command.console import plain
 from pneumo_ros.environment import require_libraries
@@ -16,6 +16,8 @@ from pneumo_ros.report.provenance import provenance
 
 if TYPE_CHECKING:
     import pandas as pd
+    import plotly.graph_objects as go
+    from matplotlib.figure import Figure
 
 Library = Literal["matplotlib", "plotly"]
 Row = dict[str, Any]
@@ -50,6 +52,15 @@ class Result:
     def charts(self) -> dict[str, Chart | HeatMap]:
         """Every chart of the page, by name."""
         return {chart.name: chart for chart in self._page(_origin(())).charts()}
+
+    @overload
+    def plot(self, name: str | None = None, library: Literal["matplotlib"] = "matplotlib") -> "Figure": ...
+
+    @overload
+    def plot(self, name: str | None, library: Literal["plotly"]) -> "go.Figure": ...
+
+    @overload
+    def plot(self, name: str | None = None, *, library: Literal["plotly"]) -> "go.Figure": ...
 
     def plot(self, name: str | None = None, library: Library = "matplotlib") -> Any:
         """A chart as a figure of matplotlib or plotly; `name` is one of `charts`, None takes the first that matters.

@@ -105,5 +105,5 @@ def _recording(model: Model, plan: Plan, signals: dict[str, np.ndarray], name: s
         effort=signals.get("effort"), pressure_a=signals.get("pressure_a"), pressure_b=signals.get("pressure_b"),
         supply_pressure=None, voltage=voltage, command_time=times, command=volts,
         description={"schema_version": 1, "version": __version__, "model": model.as_dict(), "seed": None},
-        warnings=(),
+        warnings=(), command_b_time=plan.commands.get("command_b_time"), command_b=plan.commands.get("command_b"),
     )  # fmt: skip

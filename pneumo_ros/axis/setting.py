@@ -37,6 +37,8 @@ class Setting:
         kind: type = type(self.default)
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
+        if kind is str and self.unit and isinstance(value, int | float) and not isinstance(value, bool):
+            value = f"{value:g}"  # a quantity as text takes a plain number, too
         if isinstance(self.default, list | tuple):
             return self._coerce_list(value)
         if not _has_type(value, kind):

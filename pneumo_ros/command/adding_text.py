@@ -6,7 +6,7 @@ from typing import Any
 from pneumo_ros.command.adding_json import undetermined
 from pneumo_ros.command.console import table_text
 from pneumo_ros.compare.wording import times
-from pneumo_ros.wording.additions import additions, additions_table
+from pneumo_ros.wording.additions import added_table
 from pneumo_ros.wording.diagnosis import delayed, judged_words
 from pneumo_ros.wording.errors import signals_table
 from pneumo_ros.wording.moved import moved_sentence, moved_table
@@ -23,7 +23,8 @@ def text(result: Mapping[str, Any]) -> str:
     recordings = "held-out recordings" if result["held_out"] else "recordings, which were fitted too"
     what = f"{result['horizon_s']:g} s, rms over the {recordings}"
     signals = table_text(signals_table(result["errors"], HEADS, what))
-    parts = (headline(result), delayed(result["input_delay_s"]), _table(result), signals, equations(result), moved,
+    table = table_text(added_table(result))
+    parts = (headline(result), delayed(result["input_delay_s"]), table, signals, equations(result), moved,
              _lacking(result))  # fmt: skip
     return "\n\n".join(part for part in parts if part)
 
@@ -39,13 +40,6 @@ def headline(result: Mapping[str, Any]) -> str:
         f"over {result['horizon_s']:g} s is {times(given)} the noise floor as given, {times(before)} refitted, "
         f"{times(after)} with what was added.{pays}"
     )
-
-
-def _table(result: Mapping[str, Any]) -> str:
-    """The table of `diagnose`, without the columns of a search."""
-    added = [one | {"holdout_error_before": one["error_before"], "holdout_error_after": one["error_after"]}
-             for one in result["added"]]  # fmt: skip
-    return table_text(additions_table(additions(added), "held-out error" if result["held_out"] else "error"))
 
 
 def equations(result: Mapping[str, Any]) -> str:

@@ -9,6 +9,7 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
 
 if TYPE_CHECKING:
+    from pneumo_ros.multiaxis import Machine
     from pneumo_ros.plant import Model
 
 
@@ -43,23 +44,46 @@ class Parser(argparse.ArgumentParser):
         return f"unexpected argument '{given}'"
 
 
-def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None:
-    """--namespace, --joint and --read-as: which axis to read, and how; if `cut`, also --cut: what to leave out."""
+def add_rig(parser: argparse.ArgumentParser) -> None:
+    """--namespace, --joint, --read-as and --rig: which axis, and how it is wired."""
     parser.add_argument("--namespace", metavar="NS", help="of the axis, where a recording holds several")
     parser.add_argument("--joint", metavar="NAME", help="the piston in joint_states, where these hold several joints")
+    add_wiring(parser)
+
+
+def add_wiring(parser: argparse.ArgumentParser) -> None:
+    """--read-as and --rig: how the rig is wired."""
     parser.add_argument(
         "--read-as",
         metavar="WORD,WORD",
         default="",
         help="read recordings that are not in SI units and absolute pressures, or wired otherwise: bar, kPa, hPa, MPa, "
-        "psi; gauge; mm; swapped-chambers, reversed-position, reversed-voltage; zero=125mm: position at mid stroke; "
-        "closed=5V: the command that closes the valve",
+        "psi; gauge, gauge-supply; mm, cm, in; kN, lbf; swapped-chambers, reversed-position, reversed-voltage, "
+        "reversed-force; zero=125mm: position at mid stroke; closed=5V: the command that closes the valve; without a "
+        "signal: no-pressure-a, no-pressure-b, no-supply, no-effort, no-load-cell, no-command",
     )
     parser.add_argument(
         "--rig",
         dest="rig_file",
         metavar="RIG.yaml",
         help="machine and wiring of the rig, as `pneumo rig check` writes them",
+    )
+
+
+def add_closed(parser: argparse.ArgumentParser) -> None:
+    """--closed: which signal closes the valve."""
+    parser.add_argument(
+        "--closed", metavar="VOLT", help="the signal that closes the valve, by its data sheet, such as 0V or 5V"
+    )
+
+
+def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None:
+    """As `add_rig`, and --imposed; if `cut`, also --cut: what to leave out."""
+    add_rig(parser)
+    parser.add_argument(
+        "--imposed",
+        action="store_true",
+        help="a test machine imposed the motion: the force is predicted, not the position",
     )
     if cut:
         parser.add_argument(
@@ -70,7 +94,10 @@ def add_recordings(parser: argparse.ArgumentParser, *, cut: bool = True) -> None
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """--model and --effects."""
-    parser.add_argument("--model", metavar="FILE", default="axis", help="machine file, or the name of a shipped one")
+    parser.add_argument(
+        "--model", metavar="FILE", default="axis",
+        help="machine file, or the name of a shipped one; two.yaml:shoulder is one axis of several",
+    )  # fmt: skip
     add_effects(parser)
 
 
@@ -103,6 +130,16 @@ def model_for_workers(options: argparse.Namespace) -> tuple[str, tuple[str, ...]
     own = Path(options.model)
     model = str(own.resolve()) if own.is_file() else str(options.model)
     return model, tuple(str(Path(path).resolve()) for path in options.effects)
+
+
+def chosen_machine(options: argparse.Namespace) -> "Machine | None":
+    """The machine of several axes that --model asks for; None where it has one axis, or one of them is named."""
+    place = Path(options.model)
+    if not place.is_file() or "axes" not in place.read_text(encoding="utf-8", errors="ignore"):
+        return None  # most machines: their file is read once, by `chosen_model`
+    from pneumo_ros.multiaxis.machine_file import holds_axes, load_machine
+
+    return load_machine(place, tuple(options.effects)) if holds_axes(place) else None
 
 
 def chosen_model(options: argparse.Namespace) -> "Model":

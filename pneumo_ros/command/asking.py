@@ -29,7 +29,9 @@ def asked(options: argparse.Namespace, shelf: "Shelf") -> None:
         setattr(options, name, ask(f"{name.capitalize()} in mm", length(f"the {name}")))
     if stroke:
         options.stroke = ask("Stroke in mm", length("the stroke"))
-    options.valve = ask("Valve, such as smc-sy7000 (empty: give its flow)", lambda text: shelf.find(text, "valve"), "")
+    options.valve = ask(
+        "Valve, such as smc-sy7000 (empty: give its flow)", lambda text: shelf.find(text, "valve", "regulator"), ""
+    )
     if options.valve is None or not _flows(shelf, options.valve):
         options.valve_flow = ask(f"Flow of the valve: {wishes.FLOW_FORMS}", wishes.flow)
     if options.valve is None:

@@ -40,7 +40,7 @@ def _completer(verb: str, argument: str) -> Callable[..., Sequence[str]] | None:
         ("effects", "name"): _effects, ("add", "named"): _effects, ("experiment", "separate"): _effects,
         ("parts", "what"): _parts, ("new", "cylinder"): _parts, ("new", "valve"): _parts,
         ("experiment", "name"): _experiments, ("tune", "law"): _laws,
-        ("export", "format"): lambda: ("c", "fmu"), ("completion", "shell"): lambda: ("bash", "zsh", "fish"),
+        ("export", "format"): lambda: ("c", "fmu", "mjcf"), ("completion", "shell"): lambda: ("bash", "zsh", "fish"),
     }  # fmt: skip
     machines = argument == "model" or (verb, argument) == ("export", "machine")
     found = _machines if machines else names.get((verb, argument))

@@ -107,16 +107,20 @@ def table_text(table: "Table | None") -> str:
 class Progress:
     """Call it with the fraction done, 0 to 1, and what is being done.
 
-    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both show the estimated time left.
+    On a terminal it is one moving line, elsewhere one per 10 % or thing done; both show the estimated time left, which
+    never rises: where the work takes much longer than that, it says so and shows no time.
     """
 
     WAIT = 0.5  # s; work that ends sooner shows nothing
-    GUESS = 3.0  # s of work before the rest is estimated
+    GUESS = 3.0  # s of work before the rest is estimated ...
+    ENOUGH = 0.1  # ... and the share of it that must be done
+    SLIP = 2.0  # times the time left as it was shown, beyond which it is no longer shown
 
     def __init__(self, title: str, stream: TextIO | None) -> None:
         self.title, self.stream = title, stream
         self.moving = stream is not None and stream.isatty()
         self._start, self._shown, self._drawn, self._doing = time.monotonic(), 0, 0.0, ""
+        self._end = math.inf  # when the work ends, by the earliest estimate so far
 
     def __enter__(self) -> "Progress":
         return self
@@ -144,11 +148,15 @@ class Progress:
             print(f"{self.title}: {percent if doing else 10 * self._shown} %{said}", file=self.stream, flush=True)
 
     def _left(self, share: float, now: float) -> str:
-        """', about 20 s left', once enough is done to estimate it."""
+        """', about 20 s left', once enough is done to estimate it; less each time that it is shown."""
         passed = now - self._start
-        if passed < self.GUESS or not 0.02 < share < 1.0:
+        if passed < self.GUESS or not self.ENOUGH <= share < 1.0:
             return ""
-        seconds = passed * (1.0 - share) / share
+        estimated = passed * (1.0 - share) / share
+        self._end = min(self._end, now + estimated)
+        seconds = self._end - now
+        if estimated > self.SLIP * max(seconds, 0.5):
+            return ", longer than estimated"
         return f", about {seconds:.0f} s left" if seconds < 100.0 else f", about {seconds / 60.0:.0f} min left"
 
     def _draw(self, percent: int, now: float, said: str) -> None:

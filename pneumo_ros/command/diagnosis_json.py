@@ -73,9 +73,12 @@ def equations_dict(comparison: "Comparison") -> dict[str, Any]:
 
 
 def _added(one: "Addition", model: "Model") -> dict[str, Any]:
-    known = model.library.find(one.effect).parameters
+    effect = model.library.find(one.effect)
+    known = effect.parameters
     return {
         "effect": one.effect,
+        "signature": effect.signature,
+        "remedy": effect.remedy,
         "parameters": {key: value_dict(v.value, v.std, known[key]) for key, v in one.parameters.items()},
         "indistinguishable_from": list(one.indistinguishable_from),
         "holdout_error_before": one.holdout_error_before,

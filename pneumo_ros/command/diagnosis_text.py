@@ -18,6 +18,7 @@ def text(result: Mapping[str, Any]) -> str:
         "\n".join(said.notes),
         table_text(said.equations),
         added(said),
+        "\n".join(said.doing),
         table_text(steps_table(said.steps, said.horizon)),
         table_text(said.signals),
         table_text(refused_table(said.candidates)),

@@ -13,15 +13,21 @@ _SHOWN_STRETCHES = 4  # of a run; the others are counted
 def text(result: dict[str, Any], verbose: bool) -> str:
     """The whole answer; `result` is the verb's JSON."""
     parts = [
-        headline(result), parameters(result), "\n".join(sentences(result)), directions(result), stretches(result),
-        refusals(result) if verbose else "",
+        headline(result), parameters(result), "\n".join(sentences(result)), directions(result),
+        "" if result["motion"] else stretches(result), refusals(result) if verbose else "",
     ]  # fmt: skip
     return "\n\n".join(part for part in parts if part)
 
 
 def headline(result: dict[str, Any]) -> str:
     """The windows that are used, and the noise of the method."""
-    points, runs = result["map"]["points"], result["runs"]
+    points, runs, motion = result["map"]["points"], result["runs"], result["motion"]
+    if motion:
+        return (
+            f"Pulses or regulators let flow change under a constant command: fitted by the motion in "
+            f"{motion['segments']} segments of {count(len(runs), 'run')}.\n"
+            f"Within them, predictions are {number(motion['misfit'], 2)} x the noise off (rms)."
+        )
     windows, used = sum(run["windows"] for run in runs), len(points["velocity"])
     span = result["map"]["window_s"]
     speed, force = (sorted(points[key])[used // 2] for key in ("velocity_std", "force_std"))
@@ -68,7 +74,7 @@ def sentences(result: dict[str, Any]) -> list[str]:
                 f"{first} and {second} are hard to distinguish (correlation {pair['r']:+.2f}): "
                 f"each is known within its interval, and their errors go {together}."
             )
-    return [*said, map_sentence(result["map"])]
+    return said if result["motion"] else [*said, map_sentence(result["map"])]
 
 
 def _amount(one: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ from pneumo_ros import __version__
 from pneumo_ros.command.arguments import Parser
 from pneumo_ros.command.completing import answer
 from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.each_axis import run_verb
 from pneumo_ros.command.rig_file import apply_rig
 from pneumo_ros.environment import LIBRARIES, library_advice
 from pneumo_ros.errors import DataError, PneumoError, UsageError
@@ -28,6 +29,7 @@ VERBS = (
     "add",
     "effects",
     "experiment",
+    "commission",
     "tune",
     "export",
     "fleet",
@@ -72,9 +74,11 @@ def _run(arguments: list[str]) -> int:
     verb = _verb(arguments[0])
     parser = verb_parser(arguments[0], verb)
     options = parser.parse_strictly(arguments[1:])
-    apply_rig(options)
+    replaced = apply_rig(options)
     console = Console(getattr(options, "quiet", False), getattr(options, "json", None))
-    code: int = verb.run(options, console)
+    if replaced:
+        console.note(replaced)
+    code: int = run_verb(arguments[0], verb, options, console)
     sys.stdout.flush()
     return code
 

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.actuator import SIDES
+from pneumo_ros.plant.closed import SECOND, mirrored
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import PARTS
@@ -49,13 +51,22 @@ class Plan:
 
 
 def drive_plan(
-    model: "Model", drive: "Drive", *, seconds: float | None = None, rate: float | None = None, position: float = 0.0
+    model: "Model",
+    drive: "Drive",
+    *,
+    seconds: float | None = None,
+    rate: float | None = None,
+    position: float = 0.0,
+    second: "Drive | None" = None,
 ) -> Plan:
     """The plan for a drive: `seconds` of it at `rate` [Hz], from `position` [m] at rest.
 
-    UsageError for a model that reads more than its voltage or force.
+    `second`: of the valve of chamber b, where there is one; None: it moves against the other, both counted from their
+    closed signals. UsageError for a model that reads more than that.
     """
-    if further := ", ".join(model.inputs[1:]):
+    if second and SECOND not in model.inputs:
+        raise UsageError(f"'{model.name}' has one valve command; leave out --input-b, or add effect second_valve")
+    if further := ", ".join(name for name in model.inputs[1:] if name != SECOND):
         raise UsageError(
             f"effects of '{model.name}' read measured signals ({further}); give a recording that has them as the input"
         )
@@ -63,8 +74,15 @@ def drive_plan(
     samples = max(1, round((seconds or drive.duration or SECONDS) / dt))
     time = np.arange(1 + samples, dtype=float) * dt
     volts = drive.voltage(time)
-    commands = {} if model.force_driven else {"voltage": volts}
-    return Plan(volts[:-1, None], 1, dt, model.state(y=position), drive.text, commands)
+    commands: dict[str, Any] = {} if model.force_driven else {"voltage": volts}
+    held, text = volts[:, None], drive.text
+    if SECOND in model.inputs:
+        other = second.voltage(time) if second else mirrored(model, volts)
+        changed = np.flatnonzero(np.diff(other, prepend=np.nan) != 0.0)
+        commands |= {"command_b_time": time[changed], "command_b": other[changed]}
+        held = np.column_stack([volts, other])
+        text += f", chamber b: {second.text if second else 'against it'}"
+    return Plan(held[:-1], 1, dt, model.state(y=position), text, commands)
 
 
 def replay_plan(
@@ -85,6 +103,9 @@ def replay_plan(
     if recording.command_time is not None and recording.command is not None:
         sent = recording.command_time <= samples * run.sample_time
         commands = {"command_time": recording.command_time[sent], "command": recording.command[sent]}
+    if recording.command_b_time is not None and recording.command_b is not None:
+        sent = recording.command_b_time <= samples * run.sample_time
+        commands |= {"command_b_time": recording.command_b_time[sent], "command_b": recording.command_b[sent]}
     text = f"the commands of {recording.name}"
     return Plan(run.inputs(model.inputs)[: samples * PARTS], PARTS, run.sample_time, state, text, commands)
 
@@ -112,9 +133,9 @@ def recorded(model: "Model", plan: Plan, states: Array) -> dict[str, Any]:
     if model.force_driven:
         held = np.concatenate([plan.held[:: plan.parts], plan.held[-1:]])
         read = dict(zip(model.inputs, held.T, strict=True))
-        pressures = {f"pressure_{side}": read[f"p_{side}"] for side in "ab" if f"p_{side}" in read}
+        pressures = {f"pressure_{side}": read[f"p_{side}"] for side in SIDES if f"p_{side}" in read}
         return {**signals, "effort": read[DRIVE], **pressures}
-    return {**signals, "effort": model.effort(states), "pressure_a": column["p_a"], "pressure_b": column["p_b"]}
+    return {**signals, "effort": model.effort(states), **{one.field: column[one.state] for one in model.chambers}}
 
 
 def _readings(model: "Model", plan: Plan, states: Array) -> dict[str, Array]:

@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pneumo_ros.control.closed_loop import closed_loop
+from pneumo_ros.control.figures import arrivals, tracking
 from pneumo_ros.control.reference import moves, sine
-from pneumo_ros.control.tuning import RatedMotion
+from pneumo_ros.control.sensors import NoisySensors
+from pneumo_ros.control.tuning import NOISE_SEED, RatedMotion
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Stepper
 
 if TYPE_CHECKING:
+    from pneumo_ros.control.law import Law
     from pneumo_ros.plant import Model
 
 SAMPLE_TIME = 1e-3  # s
@@ -55,16 +59,39 @@ def task_for(
             f"{model.name} reaches {top:.2g} m/s with its valve fully open, and a control law cannot make it faster; "
             "look at supply_pressure, friction and flow coefficients in the machine file"
         )
-    return Task(height, frequency or SINE_SPEED * top / (2.0 * np.pi * height), way, _duration(model, way, top))
+    return Task(height, frequency or _frequency(model, height, top), way, _duration(model, way, top))
+
+
+def _frequency(model: "Model", amplitude: float, top: float) -> float:
+    """A sine reaches the speed amplitude w and the acceleration amplitude w^2: the axis must be able to do both."""
+    by_force = np.sqrt(MOVE_FORCE * _force(model) / (model["piston.mass"] * amplitude))
+    return float(min(SINE_SPEED * top / amplitude, by_force) / (2.0 * np.pi))
 
 
 def _duration(model: "Model", way: float, top: float) -> float:
     """A move of least jerk reaches 1.875 way / T and 5.77 way / T^2."""
+    by_force = np.sqrt(5.77 * way * model["piston.mass"] / (MOVE_FORCE * _force(model)))
+    return float(max(1.875 * way / (MOVE_SPEED * top), by_force))
+
+
+def _force(model: "Model") -> float:
+    """Of the supply on the smaller area, less what friction takes of it, but for a tenth [N]."""
     supply = model["air.supply_pressure"] - model["air.atmospheric_pressure"]
-    force = min(model["piston.area_a"], model["piston.area_b"]) * supply
-    return float(
-        max(1.875 * way / (MOVE_SPEED * top), np.sqrt(5.77 * way * model["piston.mass"] / (MOVE_FORCE * force)))
-    )
+    whole = min(model["piston.area_a"], model["piston.area_b"]) * supply
+    return float(max(whole - model.parameters.get("lugre_friction.coulomb_friction", 0.0), 0.1 * whole))
+
+
+def reached(model: "Model", task: Task, law: "Law") -> tuple[float, float]:
+    """What `law` reaches on the machine: rms error along the sine, and the largest error at the end of a move [m]."""
+    wave, ways = rated_motions(model, task)[:2]
+    records = []
+    for motion in (wave, ways):
+        law.reset()
+        plant = motion.plant()
+        samples = round(motion.seconds / plant.sample_time)
+        records.append(closed_loop(plant, law, motion.reference, samples, NoisySensors(seed=NOISE_SEED)))
+    ends = arrivals(records[1], ways.hold or 1.0, ways.unit)
+    return tracking(records[0], wave.begin).rms, max(end.error for end in ends)
 
 
 def top_speed(model: "Model", voltage: float = 10.0) -> float:

@@ -1,13 +1,14 @@
 """Recordings named on the command line: folders of them expanded, read as the options say, problems reported."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pneumo_ros.command.console import Console
 
 if TYPE_CHECKING:
+    from pneumo_ros.command.together import Together
     from pneumo_ros.plant import Model
     from pneumo_ros.reading.read import Reading, ReadOptions
     from pneumo_ros.runs.cuts import Cut
@@ -42,12 +43,15 @@ def unfolded(named: Sequence[str]) -> list[str]:
 
 
 def read_options(options: argparse.Namespace) -> "ReadOptions":
-    """--namespace, --joint and --read-as; UsageError for unknown words."""
+    """--namespace, --joint, --read-as and --imposed; UsageError for unknown words."""
     from pneumo_ros.reading.read import ReadOptions
     from pneumo_ros.records.corrections import parse_words
 
     mechanics = getattr(options, "mechanics", False)  # a default of the verbs that can judge them alone
-    return ReadOptions(options.namespace, options.joint, parse_words(options.read_as), mechanics)
+    imposed = getattr(options, "imposed", False)  # not every verb has it
+    rig = getattr(options, "rig_said", None)
+    topics = tuple(rig.topics.items()) if rig else ()
+    return ReadOptions(options.namespace, options.joint, parse_words(options.read_as), mechanics, imposed, topics)
 
 
 def _cuts(options: argparse.Namespace) -> "dict[Path, tuple[Cut, ...]]":
@@ -66,7 +70,13 @@ def read_one(path: str, options: argparse.Namespace, console: Console, model: "M
     reading = read_run(path, model, read_options(options), _cuts(options).get(Path(path).resolve(), ()))
     for note in reading.notes:
         console.note(f"{reading.recording.name}: {note}")
-    return reading
+    return _on_shared_supply({path: reading}, options)[path]
+
+
+def _on_shared_supply(usable: "Mapping[str, Reading]", options: argparse.Namespace) -> "Mapping[str, Reading]":
+    """The readings of one axis of several, with the pressure of the supply that they share where it is computed."""
+    together: Together | None = getattr(options, "together", None)
+    return together.supplied(usable) if together else usable
 
 
 def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model":
@@ -74,13 +84,16 @@ def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model
     from pneumo_ros.runs import inputs
 
     found = inputs.measuring(model, runs)
+    by_force = any(run.force_driven and not run.by_pressures for run in runs)
     if found.force_driven != model.force_driven:
         console.note(
-            "No recording has a valve command: friction and load are judged, driven by the measured pressures; "
-            "record valve/command to judge valve and chambers as well"
+            "No recording has a valve command: friction and load are judged, driven by the measured "
+            f"{'force' if by_force else 'pressures'}; record valve/command to judge valve and chambers as well"
         )
-    elif found.inputs != model.inputs:
-        taken = "measured, in place of" if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
+    elif found.imposed == model.imposed and found.inputs != model.inputs:
+        computed = any(inputs.IN_PLACE[0] in run.computed for run in runs)
+        taken = "measured, in place of" if not computed else "computed from what all axes draw, in place of"
+        taken = taken if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
         console.note(f"The supply pressure is {taken} air.supply_pressure")
     console.note(inputs.judged(found, runs))
     return found
@@ -106,4 +119,5 @@ def read_expanded(
             required=[path for path, from_folder in paths.items() if not from_folder],
             progress=progress, note=console.note, refuse=lambda path, why: console.note(f"Passed over: {why}"),
         )  # fmt: skip
-    return found.runs, dict(found.refused)
+    runs = [reading.run for reading in _on_shared_supply(found.usable, options).values()]
+    return runs, dict(found.refused)

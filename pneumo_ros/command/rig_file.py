@@ -1,56 +1,92 @@
 """--rig: a file that says of a rig which machine it is and how its recordings are wired."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from pneumo_ros.errors import DataError, UsageError, brief
+from pneumo_ros.errors import UsageError
 
-KEYS = ("machine", "namespace", "joint", "read_as")
-_HOW = "type: pneumo rig check BAG --model MACHINE --out rig.yaml"
+if TYPE_CHECKING:
+    from pneumo_ros.reading.rig_file import Rig
 
 
-def apply_rig(options: argparse.Namespace) -> None:
-    """Take what the options do not say from the file of --rig, if there is one.
+_UNSAID = ("axis", "piston")  # options that nobody gave
 
-    Raises DataError when it cannot be read, UsageError when it is invalid or says something else than an option.
+
+def read_rig(path: str) -> "Rig":
+    """The entries of a rig file. Raises DataError and UsageError as `pneumo_ros.reading.rig_file.read_rig`."""
+    from pneumo_ros.reading import rig_file  # slow; --help does not need it
+
+    return rig_file.read_rig(path)
+
+
+def rig_text(
+    machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, closed: float | None = None
+) -> str:
+    """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve."""
+    if Path(machine).is_file():
+        machine = str(Path(machine).resolve())
+    said = (
+        "  # closed: 0V  # the command that closes the valve, by its data sheet: live work needs it\n"
+        if closed is None
+        else f"  closed: {closed:g}V  # the command that closes the valve\n"
+    )
+    return (
+        f"# A rig: its machine, and the wiring of its recordings. {origin}\n"
+        "rig:\n"
+        f"  machine: {machine}\n"
+        f"  namespace: {namespace}\n"
+        f"  joint: {joint}\n"
+        f"  read_as: {','.join(words)}  # as --read-as: units, gauge, swapped, reversed, zero, closed signal\n"
+        f"{said}"
+    )
+
+
+def apply_rig(options: argparse.Namespace) -> str:
+    """Take what the options do not say from the file of --rig, if there is one; a sentence where --model differs.
+
+    Raises DataError when it cannot be read, UsageError when it is invalid or says something else of the wiring than an
+    option.
     """
     path = getattr(options, "rig_file", None)
+    options.rig_said = None
     if not path:
-        return
-    given = read_rig(path)
-    for key, value in given.items():
-        option = "model" if key == "machine" else key
-        present = getattr(options, option, None)
-        if present not in (None, "", "axis") and value and present != value:
+        return ""
+    options.rig_said = rig = read_rig(path)
+    for option in ("namespace", "joint", "read_as"):
+        value, present = getattr(rig, option), getattr(options, option, None)
+        if present not in (None, "", *_UNSAID) and value and present != value:
             raise UsageError(
-                f"--rig {path} says {key} {value}, and --{option.replace('_', '-')} {present}; leave one out"
+                f"--rig {path} says {option} {value}, and --{option.replace('_', '-')} {present}; leave one out"
             )
         if value and hasattr(options, option):
             setattr(options, option, value)
+    sentence = _machine(options, rig.machine)
+    if rig.closed is not None and hasattr(options, "read_as"):
+        options.read_as = _read_as(options, rig.closed)
+    return sentence
 
 
-def read_rig(path: str) -> dict[str, str]:
-    """The entries of a rig file; a machine file is found beside it."""
-    from pneumo_ros.nearest import unknown_name
+def _machine(options: argparse.Namespace, said: str) -> str:
+    """Take the machine of the rig where --model names none; else a sentence that says which one is used."""
+    present = getattr(options, "model", None)
+    if not said or not hasattr(options, "model"):
+        return ""
+    if present in (None, "", *_UNSAID):
+        options.model = said
+        return ""
+    same = present == said or (Path(present).is_file() and Path(present).resolve() == Path(said).resolve())
+    return "" if same else f"Machine: {present}, in place of {said}, which {options.rig_file} names"
+
+
+def _read_as(options: argparse.Namespace, closed: float) -> str:
+    """Words of --read-as with which the machine's valve is closed at `closed` [V]."""
+    from pneumo_ros.plant import load_model
+    from pneumo_ros.plant.closed import closed_signal
+    from pneumo_ros.reading.rig_file import with_closed
     from pneumo_ros.records.corrections import parse_words
-    from pneumo_ros.yaml_text import load_yaml
 
-    try:
-        document: Any = load_yaml(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8 text"
-        raise DataError(f"rig file {path} cannot be read ({reason}); {_HOW}") from error
-    given = document.get("rig") if isinstance(document, dict) else None
-    if not isinstance(given, dict):
-        raise UsageError(f"rig file {path} has no section 'rig'; {_HOW}")
-    if unknown := [key for key in given if key not in KEYS]:
-        raise UsageError(f"rig file {path}: {unknown_name('entry', str(unknown[0]), KEYS)}")
-    found = {key: "" if value is None else value for key, value in given.items()}
-    if wrong := [key for key, value in found.items() if not isinstance(value, str)]:
-        raise UsageError(f"rig file {path}: {wrong[0]} is {brief(found[wrong[0]])}; it takes a text")
-    parse_words(found.get("read_as", ""))
-    beside = Path(path).parent / found.get("machine", "")
-    if found.get("machine") and beside.is_file():
-        found["machine"] = str(beside)
-    return found
+    words = parse_words(options.read_as)
+    model = load_model(getattr(options, "model", "axis"), tuple(getattr(options, "effects", ())))
+    return ",".join(with_closed(words, closed, closed_signal(model)))

@@ -26,19 +26,26 @@ ANY = "steps"  # for an effect of a user
 
 
 def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
-    """Effects of which these recordings would not show a usual size, why not, and the experiment that does.
+    """Effects that these recordings neither show nor exclude, why not, and the experiment that shows them.
 
-    None for an axis without valve, for which there are no experiments.
+    They would not show the usual size, or they speak for the effect, but not enough. Not those that breakaways showed
+    after the equations did not. None for an axis without valve, for which there are no experiments.
     """
-    from pneumo_ros.diagnose.candidate import MARGIN
+    from pneumo_ros.diagnose.score import MARGIN
 
-    library, found = outcome.model.library, list[dict[str, str]]()
-    told = outcome.steps[-1].unseen if outcome.steps and not outcome.model.force_driven else {}
-    for name, nats in told.items():
+    if not outcome.steps or outcome.model.force_driven:
+        return []
+    library, last, found = outcome.model.library, outcome.steps[-1], list[dict[str, str]]()
+    asked = f"and {MARGIN:g} are asked"
+    would = "of its usual size it would gain {:.1f} nats in these recordings"
+    gain = "these recordings gain {:.1f} nats with it"
+    told = {name: would.format(max(nats, 0.0)) for name, nats in last.unseen.items()}
+    told |= {name: gain.format(nats) for name, nats in last.undecided.items()}
+    added = {one.effect for one in outcome.added}
+    for name, why in ((name, why) for name, why in told.items() if name not in added):
         room = library.find(name).__module__.split(".")[-2]
-        why = f"of its usual size it would gain {max(nats, 0.0):.1f} nats in these recordings, and {MARGIN:g} are asked"
         experiment = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
-        found.append({"effect": name, "because": why, "experiment": f"pneumo experiment {experiment}"})
+        found.append({"effect": name, "because": f"{why}, {asked}", "experiment": f"pneumo experiment {experiment}"})
     return found
 
 
@@ -71,6 +78,9 @@ def _separating(outcome: "Outcome", added: "Addition", machine: str, progress: C
 
 
 def _showing(left: "Unexplained", machine: str) -> str:
+    if not left.against:
+        where = EQUATIONS[left.equation][0]
+        return f"To see what the residual in {where} follows: pneumo experiment {ANY} --model {machine}."
     return (
         f"To see more of the residual in {EQUATIONS[left.equation][0]}, which {VARIABLES[left.against][0]} explains "
         f"best: pneumo experiment {SHOWING[left.against]} --model {machine}."

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import driven
 from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
@@ -26,12 +27,12 @@ class Along:
     input: Array  # V, or N when force-driven: held from each sample on
     seen: dict[str, Array]  # `Model.outputs` along the measured states
     reach: float  # m, half the stroke
+    chambers: tuple[Chamber, ...]  # of the machine
 
 
 def along(model: Model, run: Run) -> Along:
     """Drive the model's own states (bristles, spool) along the measured ones and compute its outputs."""
-    frame = run.smoothed.frame[:, : 2 if model.force_driven else 4]
-    states, _ = driven(model, frame, run)
+    states, _ = driven(model, run.smoothed.states(model.chambers), run)
     spread = run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1)
     return Along(
         run=run,
@@ -40,4 +41,5 @@ def along(model: Model, run: Run) -> Along:
         input=np.append(run.held, run.held[-1]),
         seen=model.outputs(states, run.sampled(model.inputs), sample_time=run.sample_time),
         reach=0.5 * model["piston.stroke"],
+        chambers=model.chambers,
     )

@@ -18,7 +18,7 @@ from pneumo_ros.compare.verdicts import EquationVerdict, SignalError, judge_equa
 from pneumo_ros.equations.weak import Residual, equation_residuals
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
-from pneumo_ros.shooting.windows import free_run, predict
+from pneumo_ros.shooting.windows import HORIZON, fitting_horizon, free_run, predict
 
 __all__ = ["Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run", "judge_equations"]
 
@@ -75,13 +75,19 @@ class Comparison:
 
 
 def compare(
-    model: Model, runs: Sequence[Run], horizon: float = 1.0, progress: Callable[[float, str], None] | None = None
+    model: Model,
+    runs: Sequence[Run],
+    horizon: float | None = None,
+    progress: Callable[[float, str], None] | None = None,
 ) -> Comparison:
     """Compare `model` with every run over windows of `horizon` [s] and free, and judge each equation.
+
+    By default, windows are of 1 s, or less where a run is shorter.
 
     `progress` is called with the share done and the run's name. Raises UsageError when a run holds no whole window.
     """
     results = []
+    horizon = (fitting_horizon(runs) if runs else HORIZON) if horizon is None else horizon
     for i, run in enumerate(runs):
         if progress:
             progress(i / len(runs), run.name)
@@ -98,7 +104,7 @@ def compare(
             name: dependences([r.residuals[name] for r in results], motions, window_of(name))
             for name in (results[0].residuals if results else {})
         },
-        friction=friction_map(model, motions) if results else {},
+        friction=friction_map(model, motions) if results and not model.imposed else {},
     )
 
 

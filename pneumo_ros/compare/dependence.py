@@ -82,8 +82,9 @@ def _variables(residual: Residual, motion: Along, width: float) -> dict[str, Arr
     run = motion.run
     signals = {"velocity": motion.velocity, "position": run.position}
     signals["force" if run.force_driven else "voltage"] = motion.input
-    if run.pressure_a is not None and run.pressure_b is not None and not run.force_driven:
-        signals |= {"pressure_a": run.pressure_a, "pressure_b": run.pressure_b}
-        signals["pressure_difference"] = run.pressure_a - run.pressure_b
+    if not run.force_driven:
+        signals |= {chamber.field: run.signals[chamber.signal] for chamber in motion.chambers}
+    if not run.force_driven and len(motion.chambers) > 1:
+        signals["pressure_difference"] = np.subtract(*run.pressures(motion.chambers).T)
     means = {name: window_share(s, run.sample_time, residual.time, width) for name, s in signals.items()}
     return means | {"time": residual.time}

@@ -1,9 +1,10 @@
 """Where a model fails, in sentences: from the JSON of `compare`, for the terminal and for the report."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from pneumo_ros.compare.typical import typical_error
 from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, VARIABLES, amount, percent, times
 
 Level = Literal["good", "bad", "open"]
@@ -29,23 +30,38 @@ def findings(result: Mapping[str, Any]) -> list[Finding]:
     return equations + [_signal(result, name) for name in result["signals"]]
 
 
-def verdict(result: Mapping[str, Any]) -> str:
-    """The whole comparison in one sentence."""
+def verdict(result: Mapping[str, Any], judged: Sequence[Mapping[str, Any]] | None = None, where: str = "") -> str:
+    """The whole comparison in one sentence; the error of `judged` runs, by default all, which `where` names."""
+    error = headline(result, judged, where)
     same = set(result.get("refit", {}).get("runs", ())) & {run["name"] for run in result["runs"]}
     caution = " The model was refitted to recordings that it is scored on." if same else ""
     failing = [n for n, e in result["equations"].items() if e["explained_by_noise"] is False]
-    worst = max((s["ratio_to_noise"] or 0.0 for s in result["signals"].values()), default=0.0)
     runs = f"{len(result['runs'])} recording" + ("s" if len(result["runs"]) != 1 else "")
     if not failing:
-        off = any(not one["explained_by_noise"] for one in result["signals"].values())
-        still = f"; predictions over {result['horizon_s']:g} s are still up to {times(worst)} the sensor noise off"
-        sentence = f"Noise explains what '{result['model']}' leaves open in every equation that {runs} could judge"
-        return f"{sentence}{still if off else ''}.{caution}"
+        return f"Noise explains every equation of '{result['model']}' that {runs} could judge{error}.{caution}"
     *others, last = (_words(name) for name in failing)
     names = f"{', '.join(others)} and {last}" if others else last
     verb = "fails" if len(failing) == 1 else "fail"
-    size = f"predictions are up to {times(worst)} the sensor noise off"
-    return f"'{result['model']}' against {runs}: {names} {verb}; {size}.{caution}"
+    return f"'{result['model']}' against {runs}: {names} {verb}{error}.{caution}"
+
+
+def explained(result: Mapping[str, Any], judged: Sequence[Mapping[str, Any]] | None = None) -> bool:
+    """Whether noise explains every equation and the typical prediction of `judged` runs, by default all.
+
+    It agrees with `verdict` and `headline`: one signal that is off in one run is a finding, not the verdict.
+    """
+    from pneumo_ros.compare.verdicts import SIGNAL_EXPLAINED  # with numpy, which `pneumo --help` does not wait for
+
+    error = typical_error(result["runs"] if judged is None else judged)
+    fails = any(one["explained_by_noise"] is False for one in result["equations"].values())
+    return not fails and (error is None or error <= SIGNAL_EXPLAINED)
+
+
+def headline(result: Mapping[str, Any], judged: Sequence[Mapping[str, Any]] | None = None, where: str = "") -> str:
+    """The headline number as the end of a sentence, as `pneumo diagnose` has it; empty where nothing was predicted."""
+    error = typical_error(result["runs"] if judged is None else judged)
+    said = f"; the error over {result['horizon_s']:g} s is {times(error)} the noise floor"
+    return "" if error is None else f"{said}{where}"
 
 
 def _equation(result: Mapping[str, Any], name: str) -> Finding:

@@ -43,11 +43,11 @@ def regimes(motion: Along) -> dict[str, Mask]:
         "reversal": _reversal(motion),
         "near_end_stop": np.abs(motion.run.position) > motion.reach * (1.0 - 2.0 * NEAR_STOP),
     }
-    for chamber in ("a", "b"):
-        if f"port_flow_{chamber}" in motion.seen:
-            flow = motion.seen[f"port_flow_{chamber}"]
+    for chamber in motion.chambers:
+        if chamber.flow in motion.seen:
+            flow = motion.seen[chamber.flow]
             limit = NO_FLOW * float(np.max(np.abs(flow), initial=0.0))
-            masks[f"filling_{chamber}"], masks[f"exhausting_{chamber}"] = flow > limit, flow < -limit
+            masks[f"filling_{chamber.side}"], masks[f"exhausting_{chamber.side}"] = flow > limit, flow < -limit
     if "opening" in motion.seen:
         masks["valve_near_null"] = np.abs(motion.seen["opening"]) <= NEAR_NULL
     return masks

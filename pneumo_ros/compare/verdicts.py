@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 # times the noise: uncertainty of a noise estimated from the same recording, and scatter of a mean square over
 # overlapping windows, which falls with the root of their number
 _EXPLAINED, _SCATTER = 1.1, 3.0
-_SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
+SIGNAL_EXPLAINED = 1.3  # the same for predictions, whose start is an estimate too
 FARTHEST = 1e6  # noise deviations: larger errors are limited to this
 
 
@@ -36,7 +36,7 @@ class SignalError:
     @property
     def explained_by_noise(self) -> bool:
         """Whether noise alone explains the error."""
-        return bool(self.ratio <= _SIGNAL_EXPLAINED)
+        return bool(self.ratio <= SIGNAL_EXPLAINED)
 
 
 @dataclass(frozen=True)

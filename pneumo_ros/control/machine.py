@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
 ATMOSPHERE = "rod_atmospheric_force"  # an effect without parameters
+SECOND = {"second_valve", "second_regulator"}  # effects: the valve of chamber b has a command of its own
 FLOW = "arctan_flow"  # the flow that laws invert, alone or with a share of choked_flow
 
 
@@ -49,6 +50,7 @@ class Machine:
     mass_added: float = _known("payload_mass.mass_added", 0.0)
     load: float = _known("constant_load.load", 0.0)
     null_offset: float = _known("valve_null_offset.offset", 0.0)
+    null_offset_b: float = _known("second_valve.offset", 0.0)
     spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # 1000: no lag
     spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
     atmosphere_on_rod: bool = True
@@ -68,6 +70,11 @@ class Machine:
     def closed_signal(self) -> float:
         """The command [V] that closes the valve; laws count their voltages from it."""
         return -self.null_offset + 0.0  # never -0
+
+    @property
+    def second_closed(self) -> float | None:
+        """The command [V] that closes the valve of chamber b, where each chamber has a valve of its own; else None."""
+        return -self.null_offset_b + 0.0 if SECOND & {*self.effects} else None
 
     @property
     def moving_mass(self) -> float:

@@ -18,7 +18,13 @@ from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.plant.model import STEP, Model
 
 LOAD, MASS = "constant_load.load", "piston.mass"
-OF_THE_ARM = ("constant_load", "payload_mass", "imposed_motion", "measured_load")  # effects that the mechanism replaces
+OF_THE_ARM = (
+    "constant_load",
+    "payload_mass",
+    "arm_load",
+    "imposed_motion",
+    "measured_load",
+)  # effects that the mechanism replaces
 
 
 class Cylinder:
@@ -36,8 +42,9 @@ class Cylinder:
         if model.force_driven or model.inputs[1:]:
             raise UsageError(
                 f"{model.name} cannot be coupled: it takes a machine file with a section 'chambers', whose effects "
-                "read no measured signals"
+                "read no measured signals, and one valve command"
             )
+        model.require_two_chambers("coupling")
         kept = [name for name in model.effects if name not in OF_THE_ARM]
         self.model = model.with_effects([*kept, "constant_load"], {LOAD: 0.0})
         self.step_most = step
@@ -89,7 +96,7 @@ class Cylinder:
             raise UsageError(f"mass {effective_mass} kg and step {time_step} s take finite numbers above 0")
         state, values = self.state, self._values
         before = state.copy()
-        self._carry(position)
+        self.follow(position)
         state[1] = velocity
         values[self._mass], values[self._load] = effective_mass, -effective_mass * free_acceleration
         self._inputs[0, 0] = voltage
@@ -102,7 +109,7 @@ class Cylinder:
         self.time += time_step
         return effective_mass * ((end - velocity) / time_step - free_acceleration)
 
-    def _carry(self, position: float) -> None:
+    def follow(self, position: float) -> None:
         """Bring the piston to `position` [m], where the mechanism has it: the gas follows along its isentropes.
 
         The two differ by the order of the simulator's integrator, a dt^2/2; the gas must not gain energy by it.

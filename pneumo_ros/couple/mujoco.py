@@ -1,4 +1,4 @@
-"""Cylinders of machine files on named tendons and joints of any MJCF model.
+"""Cylinders of machine files on named tendons, joints and sites of any MJCF model.
 
     arm = mujoco.MjModel.from_xml_path("arm.xml")
     data = mujoco.MjData(arm)
@@ -7,7 +7,7 @@
         cylinders.step({"lift": 2.5})  # volts
 
 `step` replaces mj_step: it asks each cylinder for its mean force over the step, and applies it through the Jacobian of
-its tendon or joint. Needs `pip install mujoco`.
+its tendon, joint or pair of sites. Needs `pip install mujoco`.
 """
 
 from collections.abc import Mapping
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.couple.cylinder import Cylinder
+from pneumo_ros.couple.places import BetweenSites, OnJoint, OnTendon, Place
 from pneumo_ros.environment import require_libraries
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
@@ -30,15 +31,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Mount:
-    """Where a cylinder is: on a `tendon`, or on a `joint` (slide), and at which `length` it is at mid stroke.
+    """Where a cylinder is: on a `tendon`, a `joint` (slide) or between two `sites`, and its `length` at mid stroke.
 
-    length: of the tendon [m], or the joint's position [m], at mid stroke. sign: 1 where the tendon lengthens, or the
-    joint's position rises, as the rod extends; -1 otherwise.
+    length: of the tendon, between the sites, or the joint's position [m], at mid stroke. sign: 1 where that rises as
+    the rod extends; -1 otherwise.
     """
 
     machine: Model
     tendon: str | None = None
     joint: str | None = None
+    sites: tuple[str, str] | None = None
     length: float = 0.0
     sign: float = 1.0
 
@@ -49,7 +51,7 @@ class Mounted:
 
     cylinder: Cylinder
     mount: Mount
-    row: int  # of the tendon, or of the joint
+    place: Place
     force: float = 0.0
     position: float = 0.0
     velocity: float = 0.0
@@ -65,8 +67,8 @@ class Cylinders:
     ) -> None:
         """Attach `mounts`, chambers at atmospheric pressure; gas and friction are integrated in `step` [s] or shorter.
 
-        Raises UsageError, with the nearest names, for a tendon or joint that `model` lacks, for a joint that does not
-        slide, for a rod outside its stroke, and for an integrator other than Euler and implicitfast.
+        Raises UsageError, with the nearest names, for a tendon, joint or site that `model` lacks, for a joint that does
+        not slide, for a rod outside its stroke, and for an integrator other than Euler and implicitfast.
         """
         allowed = (mujoco.mjtIntegrator.mjINT_EULER, mujoco.mjtIntegrator.mjINT_IMPLICITFAST)
         if model.opt.integrator not in allowed:
@@ -79,24 +81,24 @@ class Cylinders:
         self._solved, self._given = np.zeros((1, model.nv)), np.zeros(model.nv)
 
     def _mounted(self, name: str, mount: Mount, step: float) -> Mounted:
-        if (mount.tendon is None) == (mount.joint is None):
-            raise UsageError(f"cylinder {name} takes a tendon or a joint, and not both")
-        kind = mujoco.mjtObj.mjOBJ_TENDON if mount.tendon else mujoco.mjtObj.mjOBJ_JOINT
-        wanted, what = (mount.tendon, "tendon") if mount.tendon else (mount.joint, "joint")
-        row = mujoco.mj_name2id(self._model, kind, wanted)
-        if row < 0:
-            count = self._model.ntendon if mount.tendon else self._model.njnt
-            names = [mujoco.mj_id2name(self._model, kind, k) or "" for k in range(count)]
-            raise UsageError(unknown_name(what, str(wanted), names))
-        if mount.joint and self._model.jnt_type[row] != mujoco.mjtJoint.mjJNT_SLIDE:
-            raise UsageError(f"joint {mount.joint} does not slide; put the cylinder on a tendon between two sites")
-        one = Mounted(Cylinder(mount.machine, step=step), mount, row, jacobian=np.zeros(self._model.nv))
+        given = [one for one in ("tendon", "joint", "sites") if getattr(mount, one) is not None]
+        if len(given) != 1:
+            has = " and ".join(given) or "none"
+            raise UsageError(f"cylinder {name} takes one of tendon, joint and sites; it has {has}")
+        place: Place
+        if mount.tendon is not None:
+            place = OnTendon(self._model, self._data, mount.tendon)
+        elif mount.joint is not None:
+            place = OnJoint(self._model, self._data, mount.joint)
+        else:
+            place = BetweenSites(self._model, self._data, mount.sites or ("", ""))
+        one = Mounted(Cylinder(mount.machine, step=step), mount, place, jacobian=np.zeros(self._model.nv))
         position = self._position(one)
         reach = 0.5 * mount.machine["piston.stroke"]
         if abs(position) > reach:
             raise UsageError(
                 f"the rod of {name} begins at {position:.4g} m, outside of its stroke of +-{reach:g} m; set length, "
-                f"the {what}'s at mid stroke (now {mount.length:g} m)"
+                f"that of its {given[0]} at mid stroke (now {mount.length:g} m)"
             )
         one.cylinder.reset(position)
         self._jacobian(one, one.jacobian)
@@ -145,20 +147,9 @@ class Cylinders:
         return float((one.jacobian - before) @ self._data.qvel / self._model.opt.timestep)
 
     def _position(self, one: Mounted) -> float:
-        mount = one.mount
-        at = self._data.ten_length[one.row] if mount.tendon else self._data.qpos[self._model.jnt_qposadr[one.row]]
-        return float(mount.sign * (float(at) - mount.length))
+        return one.mount.sign * (one.place.length() - one.mount.length)
 
     def _jacobian(self, one: Mounted, out: Array) -> None:
         """The row of the rod's position, (nv,)."""
-        out[:] = 0.0
-        if one.mount.joint:
-            out[self._model.jnt_dofadr[one.row]] = one.mount.sign
-            return
-        rows = np.asarray(self._data.ten_J)
-        if rows.shape == (self._model.ntendon, self._model.nv) and not hasattr(self._model, "ten_J_rownnz"):
-            out[:] = one.mount.sign * rows[one.row]
-            return
-        begin, count = int(self._model.ten_J_rowadr[one.row]), int(self._model.ten_J_rownnz[one.row])
-        places = self._model.ten_J_colind.ravel()[begin : begin + count]
-        out[places] = one.mount.sign * rows.ravel()[begin : begin + count]
+        one.place.row(out)
+        out *= one.mount.sign

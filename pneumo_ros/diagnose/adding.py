@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pneumo_ros.blas import on_one_thread
 from pneumo_ros.compare.compare import Comparison, compare
 from pneumo_ros.diagnose.coordinates import coordinates, starts
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import Progress, polish
-from pneumo_ros.diagnose.prediction import fitting_horizon, typical_error, windowed
+from pneumo_ros.diagnose.prediction import typical_error, windowed
 from pneumo_ros.diagnose.refining import refine
 from pneumo_ros.diagnose.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
@@ -23,6 +24,7 @@ from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.inputs import check_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import Estimate, default_free
+from pneumo_ros.shooting.windows import fitting_horizon
 
 ROUGHLY = 40  # enough for the model without the effects, whose fit is slow and is not kept
 
@@ -49,6 +51,7 @@ class Adding:
         return not set(self.train) & set(self.judged)
 
 
+@on_one_thread()
 def add(
     model: Model,
     effects: Sequence[str],
@@ -89,7 +92,8 @@ def add(
     for k, name in enumerate(fading):
         tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
         larger = _with(fitter, larger, name)
-    base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
+    if fitter.known(base).names:  # none: sealed chambers of known volume
+        base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
     found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
     judged, compared, errors = held or train, list[Comparison](), list[float]()
     for k, one in enumerate((model, base, found.model)):
@@ -107,11 +111,16 @@ def check_addable(model: Model, effects: Sequence[str]) -> None:
     if not effects:
         raise UsageError("name an effect to add; see: pneumo effects")
     for name in effects:
-        model.library.find(name)
+        entered = model.library.find(name).entered
         if name in model.effects:
             raise UsageError(f"{name} is in '{model.name}' already; pneumo compare --refit fits what a model has")
         if list(effects).count(name) > 1:
             raise UsageError(f"{name} is named twice")
+        if entered:
+            raise UsageError(
+                f"{name} is not fitted to recordings: the machine file says it. Add {name} to its 'effects', and a "
+                f"section such as {entered}; then type: pneumo compare"
+            )
     larger = model.with_effects([*model.effects, *effects])
     for name in effects:
         if not coordinates(model.library.find(name)) and any(n.startswith(f"{name}.") for n in default_free(larger)):

@@ -76,15 +76,17 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
     return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
-def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS) -> Fitted:
+def fit_base(
+    evidence: Evidence, model: Model, known: Known, iterations: int = ITERATIONS, share: float = SMALL_SHARE
+) -> Fitted:
     """Gauss-Newton from `model`, within the priors of its parameters.
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
     model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
     cost most. Rounds end when renewed slopes give no further gain, at the latest after `iterations` sets of slopes and
-    `ROUNDS_EACH` rounds for each of them.
+    `ROUNDS_EACH` rounds for each of them. A round pays that gains more than `share` of the loss, and half a nat.
     """
-    descent = _Descent(evidence, known, model)
+    descent = _Descent(evidence, known, model, share)
     for taken in range(1, iterations + 1):
         descent.renew()
         for number in range(ROUNDS_EACH):
@@ -99,8 +101,8 @@ def fit_base(evidence: Evidence, model: Model, known: Known, iterations: int = I
 class _Descent:
     """A model on its way to the best fit: its residual and the latest slopes."""
 
-    def __init__(self, evidence: Evidence, known: Known, model: Model) -> None:
-        self.evidence, self.known, self.model = evidence, known, model
+    def __init__(self, evidence: Evidence, known: Known, model: Model, share: float) -> None:
+        self.evidence, self.known, self.model, self.share = evidence, known, model, share
         specified = [model.specification(n) for n in known.names]
         self.low, self.high = np.array([s.low for s in specified]), np.array([s.high for s in specified])
         self.residual = self.slopes = np.empty(0)
@@ -111,7 +113,7 @@ class _Descent:
 
     def little(self, gain: float) -> bool:
         """Whether a gain in log likelihood is too small for another round."""
-        return gain < LITTLE + SMALL_SHARE * _loss(self.evidence, self.residual)
+        return gain < LITTLE + self.share * _loss(self.evidence, self.residual)
 
     def step(self) -> tuple[float, float]:
         """Take the best of some shares of the next step, if it gains; the gain, and the gain the slopes predicted."""

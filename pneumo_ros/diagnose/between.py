@@ -34,7 +34,8 @@ class Moved:
 def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
     """How far the misfit of `equation` falls when the parameters of `fitter.start` are refitted to held-out recordings.
 
-    Each parameter may move within its prior. None where the misfit falls by less than half, or is noise.
+    Each parameter may move within its prior. None where the misfit falls by less than half, or is noise, or where no
+    parameter moves by more than NAMED.
     """
     own = _own(fitter, model)
     other = fitter.noted(fit_base(fitter.held, model, own))
@@ -43,7 +44,8 @@ def moved_between(fitter: Fitter, model: Model, equation: str) -> Moved | None:
     if share < MOSTLY_GONE or before < REMAINING:
         return None
     changed = {n: (model[n], other[n], model.specification(n).unit) for n in own.names}
-    return Moved(share, {n: v for n, v in changed.items() if abs(v[1] - v[0]) > NAMED * abs(v[0])})
+    named = {n: v for n, v in changed.items() if abs(v[1] - v[0]) > NAMED * abs(v[0])}
+    return Moved(share, named) if named else None  # a machine whose parameters agree within 1 % is the same machine
 
 
 def _own(fitter: Fitter, model: Model) -> Known:

@@ -1,16 +1,15 @@
 """The evidence for and against a candidate: what must hold before an effect is added."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.score import Score
+from pneumo_ros.diagnose.score import MARGIN, Score
 
 Array = NDArray[np.float64]
 
-MARGIN = 8.0  # nats that an effect must gain: the logarithm of some thirty candidates, and 5 for odds of 150 to 1
 MATERIAL = 0.05  # of the usual size: a smaller effect does not matter
 SHARE_LEAST = (0.25, 0.5)  # of an equation's misfit beyond noise, which the first and later effects must remove
 
@@ -30,6 +29,7 @@ class Candidate:
     known: float = 0.0  # nats of them by which it agrees better with what was known of the model's parameters
     pays: float = 0.0  # share of the error of predictions of held-out runs that it removes, where that was asked
     lag: float = np.inf  # samples, of an effect that delays
+    swing: float = np.inf  # samples in half a period, of an effect that oscillates
     refused: str = ""  # why it may not be added whatever its score
     std: dict[str, float] = field(default_factory=dict)  # of its parameters, where the equations do not determine them
 
@@ -44,11 +44,18 @@ class Candidate:
         return SHARE_LEAST[0 if self.first else 1]
 
     @property
+    def undecided(self) -> bool:
+        """Whether the recordings speak for it, but not enough, and nothing else is objected."""
+        enough = replace(self, score=Score(MARGIN - self.score.held, self.score.held))
+        return 0.0 < self.score.nats < MARGIN and not enough.objections
+
+    @property
     def objections(self) -> tuple[str, ...]:
         """Why it may not be added; empty when it may."""
         found = list[str]()
         if self.score.nats < MARGIN:
-            found.append(f"all recordings together gain {self.score.nats:.0f} nats with it, and {MARGIN:g} are asked")
+            gained = min(round(self.score.nats), int(MARGIN) - 1)  # 7.9 is not 8
+            found.append(f"all recordings together gain {gained} nats with it, and {MARGIN:g} are asked")
         elif self.score.held <= (0.0 if self.known < MARGIN else -MARGIN):
             found.append(f"held-out recordings lose {-self.score.held:.1f} nats with it")
         if self.size < MATERIAL and self.pays < self.least:
@@ -57,6 +64,8 @@ class Candidate:
             found.append(f"removes only {100.0 * self.share:.0f} % of the misfit beyond noise")
         if self.lag < 1.0:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")
+        if self.swing < 1.0:
+            found.append("it oscillates within two samples, which no recording at this rate shows")
         if self.refused:
             found.append(self.refused)
         return tuple(found)

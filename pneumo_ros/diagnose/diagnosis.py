@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.blas import on_one_thread
 from pneumo_ros.compare.compare import Comparison, compare
 from pneumo_ros.diagnose.between import moved_between
 from pneumo_ros.diagnose.candidate import Candidate
@@ -45,6 +46,7 @@ def diagnose(
     return conclude(search, search.run(), tell)
 
 
+@on_one_thread()
 def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
     """Judge what a search found by one-second windows of the held-out runs."""
     held = search.held.runs
@@ -145,18 +147,22 @@ def _ranked(c: Candidate) -> Ranked:
 def remains(before: Comparison, after: Comparison) -> Unexplained | None:
     """The worst failing equation, or else the worst with a misfit beyond noise, over its most explanatory variable.
 
-    None where noise explains the misfit of all equations.
+    None where noise explains the misfit of all equations. Without a variable and bins where there are too few windows
+    for them: the equation fails nonetheless.
     """
     left = {n: e for n, e in after.equations.items() if significant(e)}
     if not left:
         return None
     worst = max(left, key=lambda n: (material(n, before, after), excess(left[n])))
     shown = {n: d for n, d in after.dependences.get(worst, {}).items() if len(d.bins.centre)}
+    equation, matters, none = after.equations[worst], material(worst, before, after), np.empty(0)
     if not shown:
-        return None
+        return Unexplained(
+            worst, "", none, none, none, none, none, none, equation.unit, equation.residual_rms, 0.0, matters
+        )
     against, best = max(shown.items(), key=lambda item: item[1].explained_share)
-    bins, equation = best.bins, after.equations[worst]
+    bins = best.bins
     return Unexplained(
         worst, against, bins.centre, bins.mean, bins.below, bins.above, best.noise, best.seconds, equation.unit,
-        equation.residual_rms, best.explained_share, material(worst, before, after),
+        equation.residual_rms, best.explained_share, matters,
     )  # fmt: skip

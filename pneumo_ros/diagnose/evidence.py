@@ -19,7 +19,7 @@ from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import REST
-from pneumo_ros.equations.equations import Chamber, MeasuredChamber, MeasuredMotion, moving_mass
+from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, moving_mass
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run, check_position
 
@@ -81,17 +81,21 @@ class Evidence:
         plain = without_states(model)
         if plain is model:
             return np.ones(len(self.names))
-        ratio = self.change(model) / np.maximum(self.change(plain), 1e-300)
+        grown, usual = self.change(model, np.stack([model.values, plain.values]))
+        ratio = grown / np.maximum(usual, 1e-300)
         return np.where([name == "breakaway" for name in self.names], 1.0, np.maximum(ratio, 1.0))
 
-    def change(self, model: Model) -> Array:
-        """Root mean square (families,) of the change of residuals [noise] where noise is added once more."""
+    def change(self, model: Model, parameters: Array) -> Array:
+        """Root mean square (variants, families) of the change of residuals [noise] where noise is added once more.
+
+        parameters (variants, parameters) of `model`.
+        """
         part = max(self.by_run, key=lambda one: len(one.run))
         own = self.run == part.families[0].run
-        first, second = (part.values(model, model.values[None], frame=frame)[0] for frame in (part.frame, part.noisier))
-        square = ((second - first) / self.noise[own]) ** 2
-        count = np.bincount(self.family[own], minlength=len(self.names))
-        return np.sqrt(np.bincount(self.family[own], square, len(self.names)) / np.maximum(count, 1))
+        first, second = (part.values(model, parameters, frame=frame) for frame in (part.frame, part.noisier))
+        squares, family = ((second - first) / self.noise[own]) ** 2, self.family[own]
+        count = np.maximum(np.bincount(family, minlength=len(self.names)), 1)
+        return np.sqrt([np.bincount(family, square, len(self.names)) / count for square in squares])
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""
@@ -121,7 +125,7 @@ class RunEvidence:
 
     def __init__(self, model: Model, run: Run, index: int) -> None:
         check_position(model, run)
-        self.run, self.frame = run, frame_of(run, model.force_driven)
+        self.run, self.frame = run, frame_of(run, model.chambers)
         self.families = families(model, self.frame, index)
         self.held = np.append(run.held, run.held[-1])
         self.drive = self.held if model.force_driven else model.effort(self.frame.states)
@@ -171,7 +175,8 @@ class RunEvidence:
             return None
         if family.equation == "momentum":
             return MeasuredMotion.of(family.window, states[:, 0])
-        return Chamber(model, family.equation[-1]).measured(family.window, states)
+        chamber = next(one for one in model.chambers if one.equation == family.equation)
+        return Balance(model, chamber).measured(family.window, states)
 
     def _value(self, model: Model, q: Array, variant: Followed, measured: Measured) -> Array:
         if measured is None:

@@ -9,13 +9,13 @@ from pneumo_ros.diagnose.follow import Frame, follow
 from pneumo_ros.diagnose.slip_time import UNSURE, slip_times
 from pneumo_ros.equations.breakaway import Breakaway, find_breakaways, force_spread
 from pneumo_ros.equations.bump import Bump
-from pneumo_ros.equations.equations import Chamber, Momentum, measured_throughout
+from pneumo_ros.equations.equations import Balance, Momentum, measured_throughout
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
-WINDOWS = {"momentum": (0.1, 0.04), "chamber_a": (0.2, 0.04), "chamber_b": (0.2, 0.04)}  # s
+MOMENTUM_WINDOWS, CHAMBER_WINDOWS = (0.1, 0.04), (0.2, 0.04)  # s
 SLOW = 4e-3  # s between samples: windows of slower recordings are as many samples long
 
 
@@ -51,17 +51,17 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
     run, (states, claimed) = frame.run, follow(model, frame)
     found, momentum = [], Momentum(model, run, states)
     longer = max(run.sample_time / SLOW, 1.0)
-    for width in () if model.imposed else (longer * w for w in WINDOWS["momentum"]):
+    for width in () if model.imposed else (longer * w for w in MOMENTUM_WINDOWS):
         bump = Bump.of(width, run.sample_time)
         family = _family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump))
         found.append(replace(family, by_mass=momentum.noise_by_position(bump)))
-    for chamber in "" if model.force_driven else "ab":
-        equation = Chamber(model, chamber)
+    for chamber in run.sensed(model.chambers):
+        equation = Balance(model, chamber)
         rate, steep = claimed[:, equation.column], equation.steepness(run, states)
-        for width in (longer * w for w in WINDOWS[f"chamber_{chamber}"]):
+        for width in (longer * w for w in CHAMBER_WINDOWS):
             bump = Bump.of(width, run.sample_time)
             noise = equation.noise(bump, run, states, rate, steep)
-            found.append(_family(f"chamber_{chamber}", width, index, run, bump, noise, measured_throughout(run, bump)))
+            found.append(_family(chamber.equation, width, index, run, bump, noise, measured_throughout(run, bump)))
     slides = "z" in model.states and not model.imposed
     breakaways = tuple(find_breakaways(model, run)) if slides else ()
     late = slip_times(model, breakaways)

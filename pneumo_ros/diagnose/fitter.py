@@ -6,10 +6,10 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.basefit import ITERATIONS, Fitted, Known, base_fit, fit_base, strain
+from pneumo_ros.diagnose.basefit import ITERATIONS, SMALL_SHARE, Fitted, Known, base_fit, fit_base, strain
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile, kinds
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.freedom import conditions, freed, relative
+from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaped, uneven, unevenness
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -26,6 +26,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.physical import physical
 from pneumo_ros.shooting.refit import default_free
 
 Array = NDArray[np.float64]
@@ -45,14 +46,15 @@ class Fitter:
     ) -> None:
         """`candidates`: names of the effects that may be added; by default all that the model lacks."""
         self.start, self._held_runs = start, held
-        found = (
+        self.lacking = found = (
             missing(start, measured_inputs([*train, *held])) if candidates is None else _coordinates(start, candidates)
         )
         self.whole = everything(start, found)  # one kernel for all that may be added
+        self._profiles: dict[Evidence, dict[str, Array]] = {}  # slopes of profiles, by the evidence they belong to
         self.train = Evidence(start, train)
         self.limits: list[str] = []  # a sentence for every loop that ended at its bound
         self.fit = lru_cache(2)(self._fit)  # the last two fits are kept
-        self._at_best = lru_cache(1)(lambda model: self._likelihood(self.refit(model)))
+        self._at_best = lru_cache(1)(lambda model: self.likelihood(self.refit(model)))
 
     @cached_property
     def held(self) -> Evidence:
@@ -84,9 +86,11 @@ class Fitter:
             step.append(PROBE_SHARE * usual)
         return Known(tuple(names), np.array(centre), np.array(prior), np.array(step))
 
-    def refit(self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = ()) -> Model:
-        """The model with all free parameters except `fixed` fitted to the training evidence."""
-        return self.noted(fit_base(self.train, model, self.known(model, fixed), iterations))
+    def refit(
+        self, model: Model, iterations: int = ITERATIONS, fixed: Collection[str] = (), share: float = SMALL_SHARE
+    ) -> Model:
+        """The model, all free parameters except `fixed` fitted to the training evidence; `share` as in `fit_base`."""
+        return self.noted(fit_base(self.train, model, self.known(model, fixed), iterations, share))
 
     def noted(self, fitted: Fitted) -> Model:
         """The fitted model; where the fit ended at its bound, `limits` says so."""
@@ -117,7 +121,7 @@ class Fitter:
         All other parameters are refitted, with the effect and without.
         """
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
-        return self._at_best(model) - self._likelihood(larger, values)
+        return self._at_best(model) - self.likelihood(larger, values)
 
     def _score(self, model: Model) -> float:
         """Log evidence of all recordings and of the priors of the parameters."""
@@ -125,7 +129,7 @@ class Fitter:
         found = Scoring(*parts).evidence(model, *(part.residual(model) for part in parts))
         return float(found.sum() if self._held_runs else found[0]) - strain(self.known(model).offset(model))
 
-    def _likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
+    def likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
         """Log likelihood of the training evidence and of the priors of the parameters except `fixed`.
 
         Residuals count in units of the noise that the model itself amplifies.
@@ -137,6 +141,7 @@ class Fitter:
         """The model on training and held-out evidence; the laws of `bent` (default: all added) are free in shape."""
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
         names, (usual, others) = self.added(model) if bent is None else bent, self.conditions
+        train, held = self._uneven(train), self._uneven(held)
         return freed(train, names, usual), freed(held, names, others)
 
     def ranking_fit(self, model: Model) -> BaseFit:
@@ -145,7 +150,17 @@ class Fitter:
             return self.fits(model)[0]
         inputs = self.whole.inputs
         seen = relative(conditions(self.part, inputs), conditions(self.train, inputs))
-        return freed(base_fit(self.part, self.whole, model, self.known(model)), self.added(model), seen)
+        fit = self._uneven(base_fit(self.part, self.whole, model, self.known(model)))
+        return freed(fit, self.added(model), seen)
+
+    def _uneven(self, fit: BaseFit) -> BaseFit:
+        """The fit with each profile free that its model lacks, and the parts that shape the laws of added effects.
+
+        The slopes of profiles hardly change and are made once.
+        """
+        if fit.evidence not in self._profiles:
+            self._profiles[fit.evidence] = unevenness(fit.evidence, self.whole, self.lacking)
+        return shaped(uneven(fit, self._profiles[fit.evidence]), self.added(fit.model))
 
     @cached_property
     def part(self) -> Evidence:
@@ -188,6 +203,8 @@ class Fitter:
         for n, shift, p in zip(known.names, h.shift[: len(known.names)], known.prior, strict=True):
             s = model.specification(n)
             moved[n] = min(max(model[n] + shift * p, s.low), s.high)
+        kept = physical(model, tuple(moved), np.array(list(moved.values())))  # a chamber keeps some volume at its end
+        moved = dict(zip(moved, kept.tolist(), strict=True))
         moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # biased while the effect was missing
         values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
         return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)

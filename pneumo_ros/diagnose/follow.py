@@ -1,6 +1,6 @@
 """The states a model claims along the measured motion, corrected for the model's sensor effects."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,8 +11,10 @@ from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import centred
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.model import STEP
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.sensors import driven_lanes
 
@@ -29,17 +31,18 @@ _SLIP = 6.0  # noise deviations of the position: a piston that moves less rests
 
 @dataclass(frozen=True)
 class Frame:
-    """The frame's states in a run: measured ones with smoothed velocity (n, 2 or 4)."""
+    """The measured states in a run, with smoothed velocity (n, 2 + chambers)."""
 
     run: Run
+    chambers: tuple[Chamber, ...]
     states: Array
 
 
-def frame_of(run: Run, force_driven: bool) -> Frame:
-    """Measured position, smoothed velocity and measured pressures; the velocity at rest is exactly 0."""
-    states = measured_frame(run, force_driven)
+def frame_of(run: Run, chambers: Sequence[Chamber]) -> Frame:
+    """Measured position, smoothed velocity and pressures of these chambers; the velocity at rest is exactly 0."""
+    states = measured_frame(run, chambers)
     states[resting(run), 1] = 0.0
-    return Frame(run, states)
+    return Frame(run, tuple(chambers), states)
 
 
 def noisier(frame: Frame) -> Frame:
@@ -49,9 +52,9 @@ def noisier(frame: Frame) -> Frame:
         name.rpartition("_")[0]: signal + draw.normal(0.0, run.noise[name], len(signal))
         for name, signal in run.signals.items()
     }
-    states = measured_frame(replace(run, **again), run.force_driven)
+    states = measured_frame(replace(run, **again), frame.chambers)
     states[frame.states[:, 1] == 0.0, 1] = 0.0
-    return Frame(run, states)
+    return Frame(run, frame.chambers, states)
 
 
 def resting(run: Run) -> NDArray[np.bool_]:
@@ -71,13 +74,19 @@ def resting(run: Run) -> NDArray[np.bool_]:
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
     """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
-    states, mean = _drive(model, frame.run, frame.states, _held(model, frame.run, QUICK))
+    parts = _parts(model, QUICK)
+    states, mean = _drive(model, frame.run, frame.states, frame.run.averaged(model.inputs, parts), parts)
     return states, centred(mean)
+
+
+def _parts(model: Model, enough: int) -> int:
+    """Parts of a sample: `enough`, or all where valves open and close within one: steps of 1 ms are 200 noises off."""
+    return PARTS if model.composition.jumping else enough
 
 
 @dataclass(frozen=True)
 class Followed:
-    """A run by one parameter vector: its index, states (n, states), claimed derivatives of v, p_a, p_b.
+    """A run by one parameter vector: its index, states (n, states), claimed derivatives of v and each pressure.
 
     `as_measured`: whether the frame's states are the measured ones.
     """
@@ -94,7 +103,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     Where a vector has sensor effects, the measured states are first corrected for them:
     x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs.
     """
-    parts = 1 if ranking and frame.run.sample_time < SHORT else QUICK
+    parts = _parts(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
     corrects = sensing(model, parameters)
     for drive, own in ((_as_measured, np.flatnonzero(~corrects)), (_corrected, np.flatnonzero(corrects))):
         for rows in (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE)):
@@ -124,26 +133,25 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
-    step = min(1.01 * run.sample_time / parts, LONGEST)
+    step = _step(model, run, parts)
     rest = model.state()[given.shape[-1] :]
-    columns = ("v",) if model.force_driven else ("v", "p_a", "p_b")
-    held = _held(model, run, parts)
+    columns = ("v", *(chamber.state for chamber in model.chambers))
+    held = run.averaged(model.inputs, parts)
     return model.follow_lanes(
         given, held, rest, parameters, sample_time=run.sample_time, step=step, start=run.begin, parts=parts,
         columns=columns,
     )  # fmt: skip
 
 
-def _held(model: Model, run: Run, parts: int) -> Array:
-    """The model's inputs over parts of a sample."""
-    held, width = run.inputs(model.inputs), len(model.inputs)
-    return np.asarray(held.reshape(-1, PARTS // parts, width).mean(axis=1))
-
-
-def _drive(model: Model, run: Run, given: Array, held: Array) -> tuple[Array, Array]:
-    step = min(1.01 * run.sample_time / QUICK, LONGEST)
+def _drive(model: Model, run: Run, given: Array, held: Array, parts: int) -> tuple[Array, Array]:
+    step = _step(model, run, parts)
     rest = model.state()[given.shape[1] :]
-    return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=QUICK)
+    return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts)
+
+
+def _step(model: Model, run: Run, parts: int) -> float:
+    """Longest step of the integration [s]."""
+    return min(1.01 * run.sample_time / parts, STEP if model.composition.jumping else LONGEST)
 
 
 def reads_wrong(effect: type[Effect]) -> bool:
@@ -156,7 +164,7 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
 
     Sensors that read more than the frame's states and their own states and parameters may differ in every lane.
     """
-    frame = {"y", "v", "p_a", "p_b", *SENSED}
+    frame = {"y", "v", *SENSED, *SENSED.values()}
     columns: list[int] = []
     for effect in filter(reads_wrong, model.composition.effects):
         reads = {name for function in effect.functions.values() for name in function.reads}

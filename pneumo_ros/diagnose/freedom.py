@@ -5,23 +5,29 @@ effect a may deviate from its law with position, speed, pressures and input: a (
 conditions minus their mean, in standard deviations, and their squares minus 1. The e_k are free together with the base
 parameters while further candidates are judged; the model that is refitted and predicts keeps the catalogue's law.
 Sensor effects are not free in shape: an offset is an offset.
+
+No machine's friction is the same all along its stroke, either. So every model has each profile that it lacks, each of
+its sizes known to be zero to a tenth of its usual size: only more than that is an effect.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile
 from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
 from pneumo_ros.diagnose.follow import reads_wrong
-from pneumo_ros.diagnose.hypothesis import BaseFit
+from pneumo_ros.diagnose.hypothesis import BaseFit, vectors
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import SIDES
+from pneumo_ros.plant.reach import owners_read
 from pneumo_ros.plant.signals import DRIVE
 
 Array = NDArray[np.float64]
 
-PRESSURES = ("p_a", "p_b")
+PRESSURES = tuple(f"p_{side}" for side in SIDES)
 LAW_SPREAD = 0.1  # standard deviation of e_k: a law is known to 10 % over the usual range of its variables
 
 
@@ -31,7 +37,7 @@ def conditions(evidence: Evidence, inputs: Sequence[str] = ()) -> Array:
     (residuals, 3 to 5). `inputs`: those of a force-driven model; measured pressures among them are conditions, too.
     """
     pressures = tuple(name for name in PRESSURES if name in inputs)
-    columns = 3 + (len(pressures) if evidence.by_run[0].run.force_driven else 2)
+    columns = 3 + (len(pressures) or len(evidence.by_run[0].frame.chambers))
     values = np.zeros((len(evidence.time), columns))
     for part in evidence.by_run:
         own = evidence.run == part.families[0].run
@@ -53,21 +59,77 @@ def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
     if not added:
         return fit
     columns = np.concatenate([LAW_SPREAD * _acting(fit, effect)[:, None] * seen for effect in added], axis=1)
+    return _bent(fit, tuple(f"{effect} {k}" for effect in added for k in range(seen.shape[1])), columns)
+
+
+def uneven(fit: BaseFit, columns: Mapping[str, Array]) -> BaseFit:
+    """The fit with the sizes of every profile that its model lacks as further base parameters, by their `columns`."""
+    for name, own in columns.items():
+        if name not in fit.model.effects:
+            bent = _bent(fit, tuple(f"{name} {k}" for k in range(own.shape[1])), own)
+            fit = replace(bent, uneven=fit.uneven + own.shape[1])
+    return fit
+
+
+def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequence[Coordinate]]) -> dict[str, Array]:
+    """Change of each residual by a tenth of the usual size of each size of the profiles in `lacking`, by name."""
+    found = {}
+    for name, effect in lacking.items():
+        if is_profile(effect):
+            variants = [{}, *({c.name: c.value(LAW_SPREAD)} for c in effect if c.is_size)]
+            residual = evidence.residuals(everything, vectors(everything, variants), ranking=True)
+            found[name] = np.asarray((residual[1:] - residual[0]).T)
+    return found
+
+
+def shaped(fit: BaseFit, added: Sequence[str]) -> BaseFit:
+    """The fit with the parts that shape the laws of `added` effects, as a valve's curve, free by a usual size each."""
+    parts = shaping(fit.model, added)
+    if not parts:
+        return fit
+    own = [c for part in parts.values() for c in part]
+    model = fit.model.with_effects(
+        [*fit.model.effects, *parts], {c.name: c.neutral for c in own if c.neutral is not None}
+    )
+    variants = [{}, *({c.name: c.typical} for c in own if c.is_size)]
+    residual = fit.evidence.residuals(model, vectors(model, variants))
+    return _bent(fit, tuple(c.name for c in own if c.is_size), np.asarray((residual[1:] - residual[0]).T))
+
+
+def shaping(model: Model, added: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """Parts of the library that read a parameter of an effect in `added`, and so shape its law, and their coordinates.
+
+    Parts are how a machine is built, and no candidates: the curve of a valve is no fault.
+    """
+    found = {}
+    for name in model.library.names() if added else ():
+        kind = model.library.find(name)
+        if (
+            kind.part
+            and name not in model.effects
+            and {*owners_read(kind)} & {*added}
+            and (effect := coordinates(kind))
+        ):
+            found[name] = effect
+    return found
+
+
+def _bent(fit: BaseFit, names: tuple[str, ...], columns: Array) -> BaseFit:
     count = columns.shape[1]
     return replace(
         fit,
-        names=(*fit.names, *(f"{effect} {k}" for effect in added for k in range(seen.shape[1]))),
+        names=(*fit.names, *names),
         prior=np.append(fit.prior, np.full(count, LAW_SPREAD)),
         offset=np.append(fit.offset, np.zeros(count)),
         slopes=np.concatenate([fit.slopes, columns], axis=1),
-        bends=count,
+        bends=fit.bends + count,
     )
 
 
 def _seen(part: RunEvidence, time: Array, inputs: tuple[str, ...]) -> Array:
     rows = np.clip(np.round(time / part.run.sample_time).astype(int), 0, len(part.frame.states) - 1)
     states = part.frame.states[rows]
-    pressures = part.run.sampled((DRIVE, *inputs))[rows, 1:] if inputs else states[:, 2:4]
+    pressures = part.run.sampled((DRIVE, *inputs))[rows, 1:] if inputs else states[:, 2:]
     return np.column_stack([states[:, 0], np.abs(states[:, 1]), pressures, np.abs(part.held[rows])])
 
 

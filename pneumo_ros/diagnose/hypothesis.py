@@ -26,7 +26,6 @@ FAR = 50.0  # usual sizes: no residual counts as larger
 SCALE_TAIL = 5.0  # scales: beyond, the loss of an error is linear
 OVERLAP = 0.6  # weight of each window, as windows overlap and together count about once
 COORDINATE_PROBE = 0.05  # u: finite-difference step of a candidate's coordinate
-BASE = ("dead_zone", "arctan_flow", "lugre_friction", "rod_atmospheric_force", "end_stop", "quadratic_drag")
 
 
 def robust_scale(size: Array) -> float:
@@ -116,6 +115,7 @@ class BaseFit:
     residual: Array
     slopes: Array
     bends: int = 0
+    uneven: int = 0  # of them, the first ones: points of profiles that the model lacks
 
     @property
     def own(self) -> slice:
@@ -130,9 +130,10 @@ def missing(model: Model, measured: Collection[str]) -> dict[str, tuple[Coordina
     """
     found = {}
     for name in model.library.names():
-        if name not in FRAME and name not in BASE and name not in model.effects:
+        if name not in FRAME and name not in model.effects:
             kind = model.library.find(name)
-            effect = () if kind.transmission and not model.force_driven else coordinates(kind)
+            never = kind.part or (kind.transmission and not model.force_driven)
+            effect = () if never else coordinates(kind)
             if effect and _fits(model, name, measured):
                 found[name] = effect
     return found

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import MARGIN, Candidate
+from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
-from pneumo_ros.diagnose.score import Score, Scoring, occam, prior_gain, surprise
+from pneumo_ros.diagnose.score import MARGIN, Score, Scoring, occam, prior_gain, surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def judged(
         model = base.everything.with_parameters(h.values)
         gained, beside = scoring.best(model, fits, (h.residual, r, h.shift))
         gained = gained - without
-        strained, prior = surprise(alone[2] + base.offset), prior_gain(base, alone[2], beside[2], h)
+        strained, prior = surprise(base, alone[2]), prior_gain(base, alone[2], beside[2], h)
         acts = acting(held.residual, r)
         found.append(
             Candidate(
@@ -50,6 +50,7 @@ def judged(
                 first=first,
                 score=Score(float(gained[0]) + prior - occam(base, h), float(gained[1])),
                 lag=lag(h, base.evidence.runs[0].sample_time),
+                swing=swing(h, base.evidence.runs[0].sample_time),
             )
         )
     return by_score(found)
@@ -96,3 +97,11 @@ def lag(h: Hypothesis, sample_time: float) -> float:
     """All delays of an effect together, in samples of `sample_time` [s]; infinite if it has none."""
     delays = [h.values[c.name] for c in h.coordinates if c.role == "delay"]
     return sum(delays) / sample_time if delays else np.inf
+
+
+def swing(h: Hypothesis, sample_time: float) -> float:
+    """Half the shortest period of an effect's resonances, in samples of `sample_time` [s]; infinite if it has none."""
+    fastest = max(
+        (h.values[c.name] * (1.0 if c.unit == "Hz" else 0.5 / np.pi) for c in h.coordinates if c.tuned), default=0.0
+    )
+    return float(0.5 / (fastest * sample_time)) if fastest else np.inf

@@ -14,7 +14,7 @@ from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.sensors import corrected
-from pneumo_ros.shooting.segments import Segments, cut
+from pneumo_ros.shooting.segments import Segments, cut, side_by_side
 
 Array = NDArray[np.float64]
 
@@ -28,20 +28,23 @@ def driven_by_pressures(model: Model, run: Run) -> Run:
     """The run as that of an axis driven by its measured pressures, corrected for the model's pressure sensors."""
     if model.force_driven:
         return run
-    pressures = corrected(model, measured_frame(run, force_driven=False), run)[:, 2:4]
-    force = model["piston.area_a"] * pressures[:, 0] - model["piston.area_b"] * pressures[:, 1]
-    n = len(force)
+    states = np.tile(model.state(), (len(run), 1))
+    states[:, : model.frame] = corrected(model, measured_frame(run, model.chambers), run)
+    force, n = model.outputs(states, run.sampled(model.inputs))["drive"], len(run)
     cells = np.repeat(np.arange(n - 1), PARTS) + np.tile((np.arange(PARTS) + 0.5) / PARTS, n - 1)
-    held, p_a, p_b = (np.interp(cells, np.arange(n), one) for one in (force, pressures[:, 0], pressures[:, 1]))
-    further = {**run.further, "p_a": p_a, "p_b": p_b}
+    held, *pressures = (np.interp(cells, np.arange(n), one) for one in (force, *states[:, 2 : model.frame].T))
+    further = {**run.further, **{one.state: p for one, p in zip(model.chambers, pressures, strict=True)}}
     return replace(run, input=held, further=further, force_driven=True, pressure_a=None, pressure_b=None)
 
 
-def event_rows(model: Model, runs: Sequence[Run], most: int = MOST_EVENTS) -> NDArray[np.int64]:
+def event_rows(runs: Sequence[Run], most: int = MOST_EVENTS) -> NDArray[np.int64]:
     """Which of the side-by-side segments of `runs` hold a breakaway, a stop or a reversal; spread evenly."""
-    segments = cut(model, runs, LENGTH)
-    y, lag = segments.measured[:, :, 0], max(round(_LAG / segments.sample_time), 1)
-    speed = np.abs(y[:, lag:] - y[:, :-lag]) / (lag * segments.sample_time)
+    if not runs:
+        return np.arange(0)
+    dt = runs[0].sample_time
+    samples, lag = max(round(LENGTH / dt), 2), max(round(_LAG / dt), 1)
+    y = np.concatenate([run.position[side_by_side(run, samples)[:, None] + np.arange(1, samples + 1)] for run in runs])
+    speed = np.abs(y[:, lag:] - y[:, :-lag]) / (lag * dt)
     found = np.flatnonzero((speed.min(axis=1) < _SLOW) & (np.ptp(y, axis=1) > _MOVED))
     if len(found) > most:
         found = found[np.linspace(0, len(found) - 1, most).astype(int)]

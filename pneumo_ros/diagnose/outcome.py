@@ -57,7 +57,7 @@ class Unexplained:
     """The misfit of one equation over bins of the variable that explains it best: (bins,) arrays."""
 
     equation: str
-    against: str
+    against: str  # "" where the recordings hold too few windows to say
     at: Array
     mean: Array
     low: Array  # 95 % band

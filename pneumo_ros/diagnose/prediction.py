@@ -10,34 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.compare.verdicts import window_sizes
-from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
-from pneumo_ros.shooting.windows import predict
+from pneumo_ros.shooting.segments import side_by_side
+from pneumo_ros.shooting.windows import HORIZON, predict
 
 Array = NDArray[np.float64]
 
-HORIZON, SHORTER = 1.0, (0.5, 0.2, 0.1, 0.05)  # s
 BETTER, WORSE = 0.95, 1.1  # of a signal's prediction error
-
-
-def fitting_horizon(runs: Sequence[Run], wanted: float | None = None) -> float:
-    """Length [s] of the windows in which the runs are predicted: `wanted`, or 1 s, or less where a run is shorter.
-
-    Raises UsageError for a length that is not positive, or that a run does not have.
-    """
-    shortest = min(runs, key=lambda run: len(run) * run.sample_time)
-    lasts = (len(shortest) - 1) * shortest.sample_time
-    if wanted is None:
-        return next((h for h in (HORIZON, *SHORTER) if h <= 0.95 * lasts), SHORTER[-1])
-    if not 0.0 < wanted < np.inf:
-        raise UsageError(f"--horizon {wanted:g} is not a length of time; give seconds, such as --horizon 1")
-    if wanted > lasts:
-        raise UsageError(
-            f"--horizon {wanted:g} is longer than {shortest.name}, which lasts {lasts:.3g} s; give a shorter one, or "
-            "leave that recording out"
-        )
-    return wanted
 
 
 def window_logs(model: Model, runs: Sequence[Run], horizon: float = HORIZON) -> dict[str, Array]:
@@ -48,6 +28,12 @@ def window_logs(model: Model, runs: Sequence[Run], horizon: float = HORIZON) -> 
         for name, error in predict(model, run, horizon).errors.items():
             logs.setdefault(name, []).append(np.log(window_sizes(error, noise[name])))
     return {name: np.concatenate(parts) for name, parts in logs.items()}
+
+
+def recordings(runs: Sequence[Run], horizon: float = HORIZON) -> NDArray[np.int64]:
+    """The number (windows,) of the run of each window of `window_logs`."""
+    counts = [len(side_by_side(run, round(min(len(run), horizon / run.sample_time)))) for run in runs]
+    return np.repeat(np.arange(len(runs)), counts)
 
 
 def usual_errors(logs: Mapping[str, Array]) -> dict[str, float]:

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import MARGIN, MATERIAL, Candidate
+from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.hypothesis import BaseFit
+from pneumo_ros.diagnose.score import MARGIN
 
 Array = NDArray[np.float64]
 

@@ -32,7 +32,11 @@ SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over th
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
 NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise, which is known to a tenth
 STEPS, SHARES, LITTLE = 3, (1.0, 0.3), 0.5  # of base parameters: most steps, shares tried, least gain for another
+EXACT = 3  # parabolas, each on a fifth of the width
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
+MARGIN = 8.0  # nats that an effect must gain: the logarithm of some thirty candidates, and 5 for odds of 150 to 1
+WRONG_LINE = MARGIN  # a line of the machine file that is wrong: no more than an effect, so that one such line is none
+EVEN, SAFE = 1e-9, 1e-200  # share by which even gaps differ by rounding; products are finite from here to the inverse
 BREAKAWAY_NOISE = 0.5  # of the stated spread of breakaways, which is larger than their scatter
 
 
@@ -146,7 +150,21 @@ class _Family:
             tried = [(_peak(SIZES, partial(self._whole, time=time, scale=scale)), time, scale) for time in times]
             size, time, _ = max(tried, key=lambda at: self._whole(*at))
             times, best = (time,), (size, time, _peak(scales, partial(self._whole, size, time)))
-        return best
+        return best if self.single else (*best[:2], self._exact(*best))
+
+    def _exact(self, size: float, time: float, scale: float) -> float:
+        """The scale of the greatest likelihood between the steps of NOISE, by parabolas.
+
+        A step changes the likelihood by next to nothing, and what it leaves without the cost of noise by ten nats.
+        """
+        width = NOISE[1] - NOISE[0]
+        for _ in range(EXACT):
+            low, here, high = (self._whole(size, time, scale + k * width) for k in (-1, 0, 1))
+            bent = low - 2.0 * here + high
+            move = 0.5 * (low - high) / bent if bent < 0.0 else 0.0
+            scale = min(max(scale + width * min(max(move, -1.0), 1.0), NOISE[0]), NOISE[-1])
+            width *= 0.2
+        return scale
 
     def _whole(self, size: float, time: float, scale: float) -> float:
         return float(self._likelihood(size, time, scale)[0].sum())
@@ -183,25 +201,35 @@ def _log_likelihood(residual, noise, usual, time, run, size, correlation, tail):
     """Of residuals (n,) with `noise` (n,); and the same without what noise alone costs, where `usual` (n,) is its unit.
 
     A model that amplifies the noise of the sensors less explains no more than another one. Its discrepancy, however, is
-    not counted in units of that noise: a heavy piston would make any force look small.
+    not counted in units of that noise: a heavy piston would make any force look small. Most windows are evenly spaced,
+    so that the exponential is kept; logarithms of factors (`SAFE`) are taken together.
     """
     total, beyond, mean, variance, full = 0.0, 0.0, 0.0, 0.0, size * size
+    edge, gap, kept = tail * tail, 0.0, 1.0
+    spreads, excesses = 1.0, 1.0
     for k in range(len(residual)):
         if k > 0 and run[k] == run[k - 1] and correlation > 0.0:
-            kept = np.exp((time[k - 1] - time[k]) / correlation)
+            apart = time[k] - time[k - 1]
+            if abs(apart - gap) > EVEN * gap:
+                gap, kept = apart, np.exp(-apart / correlation)
             mean, variance = kept * mean, kept * kept * variance + full * (1.0 - kept * kept)
         else:
             mean, variance = 0.0, full
         spread = variance + noise[k] * noise[k]
         error = residual[k] - mean
-        square, edge = error * error / spread, tail * tail
-        wild = max(square / edge, 1.0)
-        loss = min(square, edge) + edge * np.log(wild)
-        total -= 0.5 * (loss + np.log(spread))
-        beyond -= 0.5 * (loss + np.log(1.0 + variance / (usual[k] * usual[k])))
+        square, wild = error * error / spread, 1.0
+        if square > edge:
+            wild = square / edge
+            square = edge + edge * np.log(wild)
+        total -= 0.5 * square
+        beyond -= 0.5 * square
+        spreads, excesses = spreads * spread, excesses * (1.0 + variance / (usual[k] * usual[k]))
+        if not (SAFE < spreads < 1.0 / SAFE and excesses < 1.0 / SAFE):
+            total, beyond = total - 0.5 * np.log(spreads), beyond - 0.5 * np.log(excesses)
+            spreads, excesses = 1.0, 1.0
         gain = variance / spread / wild
         mean, variance = mean + gain * error, variance * (1.0 - gain)
-    return total, beyond
+    return total - 0.5 * np.log(spreads), beyond - 0.5 * np.log(excesses)
 
 
 @entry
@@ -243,13 +271,18 @@ def prior_gain(base: BaseFit, alone: Array, beside: Array, h: Hypothesis) -> flo
 
     alone, beside: shifts (free,) of the base parameters.
     """
-    return surprise(alone + base.offset) - surprise(beside + base.offset) - 0.5 * float(h.u @ h.u)
+    return surprise(base, alone) - surprise(base, beside) - 0.5 * float(h.u @ h.u)
 
 
-def surprise(offset: Array) -> float:
-    """Nats by which base parameters (free,) are less probable than at the centres of their priors, in deviations.
+def surprise(base: BaseFit, shift: Array) -> float:
+    """Nats by which shifted base parameters (free,) are less probable than at the centres of their priors.
 
-    By Student's density of three degrees of freedom: a machine file may be wrong in one parameter, which is no effect;
-    several that moved together are less probable than the effect that explains them.
+    A parameter is as well known as its prior says, or its line in the machine file is wrong, which costs as much as an
+    effect must be worth: one wrong line is no effect; several that moved together are less probable than the effect
+    that explains them. The points of a profile that the model lacks are no lines of its file: more than a texture is an
+    effect.
     """
-    return 2.0 * float(np.sum(np.log1p(offset**2 / 3.0)))
+    offset, lines = base.offset + shift, np.ones(len(shift), dtype=bool)
+    lines[base.own.stop : base.own.stop + base.uneven] = False
+    wrong = np.logaddexp(-0.5 * offset[lines] ** 2, -WRONG_LINE) - np.logaddexp(0.0, -WRONG_LINE)
+    return strain(offset[~lines]) - float(np.sum(wrong))

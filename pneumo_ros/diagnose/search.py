@@ -8,6 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.blas import on_one_thread
 from pneumo_ros.diagnose.basefit import unaided
 from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
@@ -17,9 +18,9 @@ from pneumo_ros.diagnose.judging import by_score, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import (
-    fitting_horizon,
     no_worse,
     pays,
+    recordings,
     typical_error,
     usual_errors,
     window_logs,
@@ -40,6 +41,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.physical import COULOMB, STATIC, physical
+from pneumo_ros.shooting.windows import fitting_horizon
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -80,6 +82,7 @@ class Search:
         train, held = ([later(run, self.late) for run in runs] for runs in (train, held))
         self.fitter = Fitter(model, train, held)
         self.start, self.train, self.held = model, self.fitter.train, self.fitter.held
+        self.recordings = recordings(self.held.runs, self.horizon)
         self.paying = set[str]()  # effects below the usual size that predictions gain by
         # results are kept, as they are needed again
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
@@ -91,6 +94,11 @@ class Search:
         """By signal, the usual error over noise with which `model` predicts the held-out runs."""
         return usual_errors(self.logs(model))
 
+    def rises(self, before: Model, after: Model) -> bool:
+        """Whether predictions of the held-out runs get worse from one model to another."""
+        return rises(self.logs(before), self.logs(after), self.recordings)
+
+    @on_one_thread()
     def run(self, until: AbstractContextManager[None] | None = None) -> Found:
         """Add effects one after another while they pass every test; what was found by then if interrupted.
 
@@ -113,7 +121,7 @@ class Search:
                         break
                     self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                     new, gone = self.extended(model, step.added)
-                    if step.added.name in gone or rises(self.logs(model), self.logs(new)):
+                    if step.added.name in gone or self.rises(model, new):
                         refused = refused | {step.added.name: UNHELPFUL}
                         continue
                     vanished = vanished | dict.fromkeys(gone, VANISHED)
@@ -141,13 +149,13 @@ class Search:
 
         An intermediate model is settled like the base and the final model before it is judged worse than them.
         """
-        steps, before = list(steps), self.logs(base)
+        steps, before = list(steps), base
         for k in (k for k, step in enumerate(steps) if step.added is not None):
             final = not any(step.added for step in steps[k + 1 :])
-            if not final and rises(before, self.logs(steps[k + 1].model)):
+            if not final and self.rises(before, steps[k + 1].model):
                 steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model, base))
-            after = self.logs(model if final else steps[k + 1].model)
-            if rises(before, after):
+            after = model if final else steps[k + 1].model
+            if self.rises(before, after):
                 last = without(steps[k], [step.added.name for step in steps[k:] if step.added], UNHELPFUL)
                 return Found(base, steps[k].model if k else base, (*steps[:k], last))
             before = after

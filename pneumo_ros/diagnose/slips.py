@@ -5,8 +5,9 @@ by the median over events of the squared error per sample, or by the upper quart
 slightly too early or too late, which no start corrects, must not decide.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,12 +58,16 @@ class Slips:
         return min(len(self.train_rows), len(self.held_rows)) >= FEWEST_JUDGED
 
     def train(self, model: Model) -> Segments:
-        """Training events, first guesses by `model`."""
-        return events(model, self.train_runs, self.train_rows)
+        """Training events, first guesses by `model`; those of the last two models are kept."""
+        return self._train(model)
 
     def held(self, model: Model) -> Segments:
-        """Held-out events."""
+        """Held-out events, first guesses by `model`."""
         return events(model, self.held_runs, self.held_rows)
+
+    @cached_property
+    def _train(self) -> Callable[[Model], Segments]:
+        return lru_cache(2)(lambda model: events(model, self.train_runs, self.train_rows))
 
 
 def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Model, Slips] | None:
@@ -71,7 +76,7 @@ def slips(model: Model, train: Sequence[Run], held: Sequence[Run]) -> tuple[Mode
     if alone is None or "lugre_friction" not in alone.effects:
         return None
     first, second = (tuple(driven_by_pressures(model, run) for run in runs) for runs in (train, held))
-    found = Slips(first, second, event_rows(alone, first), event_rows(alone, second))
+    found = Slips(first, second, event_rows(first), event_rows(second))
     return (alone, found) if len(found.train_rows) >= FEWEST_FITTED else None
 
 

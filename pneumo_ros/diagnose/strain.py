@@ -41,7 +41,7 @@ def followed(
         if simple and h.relief > anyway + PART_REGAINED * strained:
             best.setdefault(h.name, h)
     chosen = [h for h in list(best.values())[:MOST_FOLLOWED] if h.name not in known]
-    models = [fitter.refit(fitter.extended(base.model, h), SETS_OF_SLOPES) for h in chosen]
+    models = [fitter.refit(fitter.extended(base.model, h), SETS_OF_SLOPES, share=0.0) for h in chosen]
     found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
     return [h for h, _ in found], [held for _, held in found]
 

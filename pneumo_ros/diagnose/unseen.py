@@ -4,19 +4,30 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneumo_ros.diagnose.candidate import MARGIN
 from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.score import MARGIN
+
+LEAST = 1e-12  # of a variance, in usual sizes squared
 
 
 def unseen(screened: Sequence[Hypothesis]) -> dict[str, float]:
     """By name, the nats that an effect of usual size would gain, for effects where these are fewer than asked.
 
-    `screened`: every candidate fitted linearly in several shapes, each size to its usual one. A size known with a
-    deviation of s usual sizes gains 1 / (2 s^2) nats and costs ln(1 + 1 / s^2) / 2: see `score`.
+    `screened`: every candidate fitted linearly in several shapes, each size to its usual one.
     """
     best: dict[str, float] = {}
     for h in screened:
-        variance = np.diag(h.covariance) if len(h.covariance) else np.full(1, np.inf)
-        information = float(np.max(1.0 / np.maximum(variance, 1e-12), initial=0.0))
-        best[h.name] = max(best.get(h.name, -np.inf), 0.5 * (information - np.log1p(information)))
+        best[h.name] = max(best.get(h.name, -np.inf), _nats(h))
     return {name: nats for name, nats in best.items() if nats < MARGIN}
+
+
+def _nats(h: Hypothesis) -> float:
+    """Nats that the effect would gain if each of its sizes were a usual one, with whatever sign.
+
+    With the information H about the sizes it gains tr(H) / 2 on average and costs ln det(1 + H) / 2: see `score`. What
+    is uncertain of one point of a profile beside the others does not count.
+    """
+    if not len(h.covariance):
+        return 0.0
+    information = np.linalg.inv(h.covariance + LEAST * np.eye(len(h.covariance)))
+    return 0.5 * float(np.trace(information) - np.linalg.slogdet(np.eye(len(information)) + information)[1])

@@ -18,7 +18,7 @@ from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict
 from pneumo_ros.compare.wording import SIGNALS, amount, percent
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
-from pneumo_ros.diagnose.prediction import typical_error, usual_errors
+from pneumo_ros.diagnose.prediction import WORSE, typical_error, usual_errors
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -45,15 +45,35 @@ class Missed:
         return f"predictions of the {SIGNALS[self.signal][0]} on held-out recordings are off by {off} in that time"
 
 
-def rises(before: Mapping[str, Array], after: Mapping[str, Array]) -> bool:
+def rises(before: Mapping[str, Array], after: Mapping[str, Array], run: NDArray[np.int64] | None = None) -> bool:
     """Whether held-out predictions get worse, by more than their scatter, and are worse than noise explains.
 
-    before, after: by signal, logarithms of the errors over noise (windows,) in the same windows.
+    before, after: by signal, logarithms of the errors over noise (windows,) in the same windows. `run`: number of the
+    recording (windows,) of each; by default all windows are of one. Windows of one recording are not independent: of
+    the scatter between windows and that between recordings the larger one counts. One recording alone decides where its
+    predictions get worse by a tenth: a small rise in it may be chance, and a large one is lost in the scatter between
+    recordings that it makes itself.
     """
+    parts = [] if run is None or run.max(initial=0) == 0 else [run == k for k in np.unique(run)]
     change = np.mean([after[name] - before[name] for name in before], axis=0)
-    scatter = float(np.std(change)) / np.sqrt(len(change))
-    first, second = typical_error(usual_errors(before)), typical_error(usual_errors(after))
-    return bool(second > max(first, SIGNIFICANT) and np.mean(change) > BEYOND_SCATTER * scatter)
+    sums = np.array([np.sum((change - np.mean(change))[own]) for own in parts])  # clusters (Liang and Zeger 1986)
+    scatter = max(_scatter(change), float(np.sqrt(np.sum(sums**2))) / len(change))
+    alone = any(
+        np.mean(change[own]) > max(np.log(WORSE), BEYOND_SCATTER * _scatter(change[own]))
+        and _worse({n: v[own] for n, v in before.items()}, {n: v[own] for n, v in after.items()})
+        for own in parts
+    )
+    return alone or bool(_worse(before, after) and np.mean(change) > BEYOND_SCATTER * scatter)
+
+
+def _scatter(change: Array) -> float:
+    """Standard error of the mean of changes (windows,)."""
+    return float(np.std(change)) / float(np.sqrt(len(change)))
+
+
+def _worse(before: Mapping[str, Array], after: Mapping[str, Array]) -> bool:
+    """Whether the error is larger, and larger than noise."""
+    return typical_error(usual_errors(after)) > max(typical_error(usual_errors(before)), SIGNIFICANT)
 
 
 def verdict(added: Sequence[Addition], unexplained: Unexplained | None, missed: Sequence[Missed]) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.equations.guess import resting_states
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.smooth import smooth
@@ -82,9 +83,5 @@ def _leaves(y: Array, start: int, here: float, slip: float) -> int | None:
 
 def holding_force(model: Model, run: Run) -> Array:
     """Force on the piston (n,) [N] without friction and inertia; friction balances it while the piston rests."""
-    states = np.tile(model.state(), (len(run), 1))
-    states[:, 0] = run.position
-    if not model.force_driven:
-        states[:, 2], states[:, 3] = run.signals["pressure_a_pa"], run.signals["pressure_b_pa"]
-    seen = model.outputs(states, run.sampled(model.inputs))
+    seen = model.outputs(resting_states(model, run), run.sampled(model.inputs))
     return smooth(seen["drive"] - seen["force"], run.sample_time, 0.008, 2)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.equations.bump import Bump
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.runs.noise import noise_level
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.smooth import smooth
@@ -64,8 +65,8 @@ class Momentum:
         if model.force_driven:
             parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
         else:
-            for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
-                parts.append(noise[name] * model[f"piston.{area}"] * bump.noise([(bump.phi, ones)]))
+            for chamber in model.chambers:
+                parts.append(noise[chamber.signal] * model[chamber.area] * bump.noise([(bump.phi, ones)]))
         parts.append(bump.coarseness(_MOMENTUM_SUMS) * np.sqrt(bump.apply(bump.phi, self._drive**2)))
         return np.asarray(np.sqrt(np.sum(np.square(parts), axis=0)))
 
@@ -81,18 +82,18 @@ class Momentum:
         return _free_of(slow | ~run.measured | (np.abs(run.position) > reach), bump)
 
 
-class Chamber:
-    """The equation of one chamber, "a" or "b", along states (n, states) of a run; values in kg/s."""
+class Balance:
+    """The mass balance of one chamber along states (n, states) of a run; values in kg/s."""
 
-    def __init__(self, model: Model, chamber: str) -> None:
-        self.model, self.chamber, self.name = model, chamber, f"p_{chamber}"
-        self.column = model.states.index(self.name)
+    def __init__(self, model: Model, chamber: Chamber) -> None:
+        self.model, self.chamber = model, chamber
+        self.column = model.states.index(chamber.state)
         self.gamma = model["air.heat_capacity_ratio"]
-        self._slope = model["piston.area_a"] if chamber == "a" else -model["piston.area_b"]
+        self._slope = chamber.way * model[chamber.area]
 
     def volume(self, position: Array) -> Array:
         """Volume (n,) [m3]."""
-        return self.model[f"chambers.volume_{self.chamber}"] + self._slope * position
+        return self.model[self.chamber.volume] + self._slope * position
 
     def value(self, bump: Bump, states: Array, pressure_rate: Array) -> Array:
         """Residual (windows,), with the pressure derivative (n,) that the model claims along the states."""
@@ -114,7 +115,7 @@ class Chamber:
         by_log = steep / p - pressure_rate / p**2
         by_volume = self.gamma * self._slope / self.volume(states[:, 0])
         parts = [
-            noise[f"pressure_{self.chamber}_pa"] * bump.noise([(-bump.first, 1.0 / p), (-bump.phi, by_log)]),
+            noise[self.chamber.signal] * bump.noise([(-bump.first, 1.0 / p), (-bump.phi, by_log)]),
             noise["position_m"] * bump.noise([(-bump.first, by_volume)]),
             bump.coarseness(_CHAMBER_SUMS) * np.sqrt(bump.apply(bump.phi, self._rate(states, pressure_rate) ** 2)),
         ]

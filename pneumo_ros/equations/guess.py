@@ -1,12 +1,14 @@
 """First guesses of the state along a recording, before any simulation is fitted."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.plant import Model
-from pneumo_ros.runs.run import Run, check_position
+from pneumo_ros.plant.actuator import Chamber
+from pneumo_ros.runs.run import POSITION, Run, check_position
 from pneumo_ros.runs.sensors import driven
 from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain, smooth
 
@@ -20,13 +22,9 @@ _FORCE = 10.0
 _UNSURE = 0.3
 
 
-def measured_frame(run: Run, force_driven: bool) -> Array:
-    """Measured position and pressures with the smoothed velocity (n, 4); (n, 2) of a force-driven axis."""
-    frame: Array = run.smoothed.frame[:, : 2 if force_driven else 4].copy()
-    for column, signal in zip((0, 2, 3), run.signals.values(), strict=False):
-        if column < frame.shape[1]:
-            frame[:, column] = signal
-    return frame
+def measured_frame(run: Run, chambers: Sequence[Chamber]) -> Array:
+    """Measured position, smoothed velocity and the measured pressures of a machine's chambers (n, 2 + chambers)."""
+    return np.column_stack([run.position, run.smoothed.motion[:, 1], run.pressures(chambers)])
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ def guess_states(model: Model, run: Run, at: Index) -> Guess:
     """
     check_position(model, run)
     guess = run.smoothed
-    frame = guess.frame[:, : 2 if model.force_driven else 4]
+    frame = guess.states(model.chambers)
     states, _ = driven(model, frame, run)
     chosen: Array = states[at]
     if "z" in model.states and not model.imposed:
@@ -59,6 +57,13 @@ def guess_states(model: Model, run: Run, at: Index) -> Guess:
             acceleration += smooth(states[:, 0] - frame[:, 0], run.sample_time, 1.5 * HALF_WIDTH, 3, 2)[at]
         _balance(model, chosen, run.sampled(model.inputs)[at], acceleration)
     return Guess(chosen, _scale(model, run, states, frame))
+
+
+def resting_states(model: Model, run: Run) -> Array:
+    """States (n, states) of a piston that rests at each measured position, under the measured pressures."""
+    states = np.tile(model.state(), (len(run), 1))
+    states[:, 0], states[:, 2 : model.frame] = run.position, run.pressures(model.chambers)
+    return states
 
 
 def _balance(model: Model, states: Array, held: Array, acceleration: Array) -> None:
@@ -97,6 +102,6 @@ def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
 
 
 def measured_columns(model: Model) -> dict[str, int]:
-    """Column of the state of each measured signal, by report name; pressures only where the model has chambers."""
-    shown = {"position_m": "y", "pressure_a_pa": "p_a", "pressure_b_pa": "p_b"}
-    return {name: model.states.index(state) for name, state in shown.items() if state in model.states}
+    """Column of the state of each measured signal, by report name: position, and the pressure of each chamber."""
+    columns = {chamber.signal: model.states.index(chamber.state) for chamber in model.chambers}
+    return {POSITION: model.states.index("y"), **columns}

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.bump import Bump
-from pneumo_ros.equations.equations import Chamber, Momentum, centred, measured_throughout, moving_mass
+from pneumo_ros.equations.equations import Balance, Momentum, centred, measured_throughout, moving_mass
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.runs.run import Run, check_position
 from pneumo_ros.runs.sensors import driven
 
@@ -51,9 +52,8 @@ def equation_residuals(model: Model, run: Run) -> dict[str, Residual]:
     check_position(model, run)
     states, claimed = _along(model, run)
     result = {} if model.imposed else {"momentum": _momentum(model, run, states, claimed)}
-    if not model.force_driven:
-        for chamber in ("a", "b"):
-            result[f"chamber_{chamber}"] = _chamber(model, run, states, claimed, chamber)
+    for chamber in run.sensed(model.chambers):
+        result[chamber.equation] = _chamber(model, run, states, claimed, chamber)
     return result
 
 
@@ -74,7 +74,7 @@ def force_error(model: Model, run: Run) -> float:
 
 def _along(model: Model, run: Run) -> tuple[Array, Array]:
     """States and claimed derivatives (n, states) along the measured signals, corrected for sensor effects."""
-    states, mean = driven(model, measured_frame(run, model.force_driven), run)
+    states, mean = driven(model, measured_frame(run, model.chambers), run)
     return states, centred(mean)
 
 
@@ -86,12 +86,12 @@ def _momentum(model: Model, run: Run, states: Array, claimed: Array) -> Residual
     return _residual("momentum", "N", run, bump, value, equation.noise(bump), equation.usable(bump))
 
 
-def _chamber(model: Model, run: Run, states: Array, claimed: Array, chamber: str) -> Residual:
-    bump, equation = Bump.of(CHAMBER_WINDOW, run.sample_time), Chamber(model, chamber)
+def _chamber(model: Model, run: Run, states: Array, claimed: Array, chamber: Chamber) -> Residual:
+    bump, equation = Bump.of(CHAMBER_WINDOW, run.sample_time), Balance(model, chamber)
     rate = claimed[:, equation.column]
     value = equation.value(bump, states, rate)
     noise = equation.noise(bump, run, states, rate, equation.steepness(run, states))
-    return _residual(f"chamber_{chamber}", "kg/s", run, bump, value, noise, measured_throughout(run, bump))
+    return _residual(chamber.equation, "kg/s", run, bump, value, noise, measured_throughout(run, bump))
 
 
 def _residual(

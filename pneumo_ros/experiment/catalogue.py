@@ -1,15 +1,16 @@
 """All experiments, by the name that a user types."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.experiment import constant_voltage, excitation, telling
+from pneumo_ros.experiment import constant_voltage, excitation, plumbing, telling
+from pneumo_ros.experiment.beside import counted_from
 from pneumo_ros.experiment.programme import Programme
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.closed import centred, closed_signal
+from pneumo_ros.plant.closed import centred, closed_signal, says_closed
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,11 @@ EXPERIMENTS = {
         "a slow triangle to just beyond the dead zone: offset and play of the valve", telling.triangle, 32.0
     ),
     "blocked-triangle": Experiment("the same with the piston blocked: the valve alone", telling.blocked_triangle, 32.0),
+    "plumbing": Experiment(
+        "ten seconds at low opening about where the piston stands: signs, units, plugs (pneumo rig check)",
+        plumbing.plumbing,
+        plumbing.SECONDS,
+    ),
     "vent": Experiment("chambers vented, supply shut off: zero of the pressure sensors", telling.vent, 20.0),
 }
 
@@ -72,7 +78,9 @@ def make_programme(name: str, model: Model, voltages: Sequence[float] = (), seco
             raise UsageError(f"{name} chooses its voltages itself; voltages are for constant-voltage")
         make = partial(_with_voltages, voltages)
     made = make(centred(model), experiment.seconds if seconds is None else seconds)
-    return replace(made, closed=closed_signal(model))
+    return counted_from(
+        made, closed_signal(model), says_closed=says_closed(model.effects, model.parameters, model.uncertainty)
+    )
 
 
 def _with_voltages(voltages: Sequence[float], model: Model, seconds: float) -> Programme:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Generator
 from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.experiment.trace import Trace
 from pneumo_ros.experiment.trial_result import AbortedError, TrialResult
+from pneumo_ros.experiment.voltages import Ramps
 
 STILL, WITHIN = 0.3, 3e-4  # s, m: a piston rests if it stays this long within this distance
 CALM = 10.0  # s: longest wait for rest at closed valve
@@ -15,6 +16,9 @@ STUCK = 10.0  # s without SLIP of progress on the way back
 NEAR = 0.05  # of the room: tolerance of a start position at the limit
 LAST = 1.0  # s over which the final speed is taken
 BRAKE, PRESENT = 0.02, 0.05  # m/s above which the valve brakes; s over which the present speed is taken
+AHEAD = 0.1  # s that a piston coasts after its valve has closed: a ramp ends so much earlier
+PAUSE = 0.5  # s at closed valve between two ramps of a blind programme
+MOVED, READ = 4.0, 10.0  # `end`s beyond which a blind position has moved, or reads, in mm: no piston is there in m
 
 Voltages = Generator[float, None, None]
 
@@ -34,6 +38,7 @@ class Conductor:
         self.index = 0  # of the present or next trial
         self.time = self.position = 0.0
         self._inside = False
+        self._metre = 1.0  # of a blind programme: m for one unit of the position
         self._now, self._late = Trace(PRESENT), Trace(LAST)
         self._voltages = self._all()
 
@@ -48,12 +53,14 @@ class Conductor:
         return next(self._voltages, 0.0)
 
     def _check(self) -> None:
-        """The piston may start at the end of its stroke, but must not be driven there."""
+        """The piston may start at or near the end of its stroke, but must not be driven there."""
         if not math.isfinite(self.position):
             self._stop(f"the position is {self.position}; check the sensor")
-        if abs(self.position) < self.programme.end:
+        if self.programme.blind:
+            return
+        if self.programme.low <= self.position <= self.programme.high:
             self._inside = True
-        elif self._inside:
+        elif self._inside and abs(self.position) >= self.programme.end:
             self._stop(f"the piston has reached the end stop, {self.position:+.3f} m (end: {self.programme.end:g} m)")
 
     def _stop(self, reason: str) -> None:
@@ -67,7 +74,7 @@ class Conductor:
         for index, trial in enumerate(self.programme.trials):
             self.index = index
             yield from self._settle()
-            if not trial.anywhere and (way := self._way_to_start(trial)):
+            if not (trial.anywhere or self.programme.blind) and (way := self._way_to_start(trial)):
                 yield from self._go(*way)
                 yield from self._settle()
             yield from self._run(trial)
@@ -79,6 +86,9 @@ class Conductor:
 
         Closed chambers keep their pressures: without braking the piston coasts for decimetres.
         """
+        if self.programme.blind:  # no sign to brake by, no unit to judge rest by
+            yield from self._hold(PAUSE)
+            return
         direction = 1 if self._now.speed > 0.0 else -1
         while direction * self._now.speed > BRAKE:
             yield -direction * self._moderate(-direction)
@@ -131,15 +141,53 @@ class Conductor:
     def _run(self, trial: Trial) -> Voltages:
         """A rest, then the trial's voltage, both recorded."""
         self.recording = trial.name
-        begin = self.time
-        while self.time - begin < self.programme.rest:
-            yield 0.0
+        yield from self._hold(self.programme.rest)
         opened, start = self.time, self.position
         self._late = Trace(LAST)
-        ended = yield from (self._push(trial) if trial.direction else self._excite(trial))
+        if isinstance(trial.voltage, Ramps):
+            ended = yield from self._ramp(trial.voltage, trial.seconds)
+        else:
+            ended = yield from (self._push(trial) if trial.direction else self._excite(trial))
         self.recording = None
         seconds, way = self.time - opened, abs(self.position - start)
         self.outcomes.append(TrialResult(trial.name, trial.voltage.text, ended, seconds, way, self._late.speed))
+
+    def _hold(self, seconds: float) -> Voltages:
+        """The closed valve for `seconds`."""
+        begin = self.time
+        while self.time - begin < seconds:
+            yield 0.0
+
+    def _ramp(self, ramps: Ramps, seconds: float) -> Generator[float, None, str]:
+        """Ramps to and fro, each until the piston is `way` beyond where it stood first.
+
+        A piston that goes farther one way than back would come to an end stop after some ramps. Until one ramp has
+        moved it, the sign of the position is not known, and only its way counts.
+        """
+        begin, home, direction, count, sign = self.time, self.position, 1, 0, 0.0
+        while count < 2 or self.time - begin < seconds:
+            opened, start = self.time, self.position
+            while self.time - opened < ramps.seconds and not self._gone(home, start, direction * sign, ramps.way):
+                self._late.add(self.time, self.position)
+                yield direction * ramps.at(self.time - opened)
+            yield from self._hold(PAUSE)
+            if sign == 0.0 and self._metre * abs(self.position - start) >= 0.5 * ramps.way:
+                sign = direction * math.copysign(1.0, self.position - start)
+                home = home if count == 0 else self.position  # it stood at an end stop, or is stuck one way
+            direction, count = -direction, count + 1
+        return "time"
+
+    def _gone(self, home: float, start: float, sense: float, way: float) -> bool:
+        """Whether the piston is `way` [m] from `home` to the side of `sense`; 0: whether it moved so far from `start`.
+
+        What moves by strokes, or reads many of them, is in mm: in metres it would have left the cylinder.
+        """
+        if abs(self.position - home) > MOVED * self.programme.end or abs(self.position) > READ * self.programme.end:
+            self._metre = 1e-3
+        soon = self.position + AHEAD * self._now.speed
+        if sense == 0.0:
+            return self._metre * abs(soon - start) >= way
+        return self._metre * sense * (soon - home) >= way
 
     def _push(self, trial: Trial) -> Generator[float, None, str]:
         """Move one way until travel, time or room is used up; returns why it ended."""

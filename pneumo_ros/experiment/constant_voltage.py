@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneumo_ros.errors import UsageError
+from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.experiment.programme import MAX_VOLTAGE, Programme, Trial
 from pneumo_ros.experiment.room import dead_zone, room_of
 from pneumo_ros.experiment.voltages import Constant
@@ -44,10 +44,16 @@ def name_of(volts: float) -> str:
 
 
 def _way(model: Model, volts: float, seconds: float, low: float) -> float:
-    """Predicted travel [m] in `seconds` of motion, from rest near the end that the piston comes from."""
+    """Predicted travel [m] in `seconds` of motion, from rest near the end that the piston comes from.
+
+    A piston that leaves nothing of a chamber at its end, where the model ends, has gone the whole way.
+    """
     sample, start = 0.01, low if volts > 0.0 else -low
     held = np.full(round((PATIENCE + seconds) / sample), volts)
-    y = model.simulate(held, model.state(y=start), sample_time=sample)[:, 0]
+    try:
+        y = model.simulate(held, model.state(y=start), sample_time=sample)[:, 0]
+    except NumericalError:
+        return 2.0 * abs(low)
     away = np.abs(y - start)
     moved = int(np.argmax(away > 2e-3))
     return float(away[min(moved + round(seconds / sample), len(away) - 1)]) if moved else 0.0

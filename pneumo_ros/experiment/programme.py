@@ -2,10 +2,10 @@
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pneumo_ros.errors import UsageError, brief
-from pneumo_ros.experiment.voltages import Constant, Voltage
+from pneumo_ros.experiment.voltages import Constant, Ramps, Voltage
 
 MAX_VOLTAGE = 10.0  # V, what valve amplifiers of this kind take
 
@@ -50,6 +50,8 @@ class Programme:
     rest: float = 0.6  # at closed valve before each trial, recorded
     prepare: str = ""  # preparation by hand
     closed: float = 0.0  # signal [V] at which the valve is closed; voltages of trials are counted from it
+    says_closed: bool = False  # whether a file or machine says so, else 0 V is an assumption
+    blind: bool = False  # unit, zero and sign of the position are unknown: only how far it moves counts
 
     def __post_init__(self) -> None:
         if not -self.end < self.low < self.high < self.end < math.inf:
@@ -61,6 +63,8 @@ class Programme:
             raise UsageError(f"rest is {self.rest:g} s; it takes at least 0.2 s, so that a breakaway is recognised")
         if not self.trials:
             raise UsageError("the programme holds no trial")
+        if self.blind and not all(isinstance(trial.voltage, Ramps) for trial in self.trials):
+            raise UsageError("a blind programme takes trials of ramps only: other trials need to know where they are")
         self._check_names()
         self._check_voltages()
 
@@ -81,3 +85,16 @@ class Programme:
     def span(self) -> float:
         """Room between the limits [m]."""
         return self.high - self.low
+
+
+def within(programme: Programme, limits: tuple[float, float] | None) -> Programme:
+    """The programme inside `limits` [m] of a rig, too; UsageError where that leaves no room."""
+    if limits is None or programme.blind:
+        return programme
+    low, high = max(programme.low, limits[0]), min(programme.high, limits[1])
+    if low >= high:
+        raise UsageError(
+            f"the rig is limited to {limits[0]:g} to {limits[1]:g} m, and {programme.experiment} needs "
+            f"{programme.low:g} to {programme.high:g} m: no room is left"
+        )
+    return replace(programme, low=low, high=high)

@@ -13,22 +13,25 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.yaml_text import load_yaml
 
 _NUMBERS = {"low": "m", "high": "m", "end": "m", "return_right": "V", "return_left": "V", "rest": "s", "closed": "V"}
-_TRIAL = ("name", "constant", "steps", "sweep", "seconds", "patience", "travel", "anywhere")
+_TRIAL = ("name", "constant", "steps", "sweep", "ramps", "seconds", "patience", "travel", "anywhere")
 _HEAD = """\
 # Trials of '{experiment}', made for the machine '{machine}'. Run them with: pneumo experiment THIS_FILE
 # Positions in m from mid stroke, voltages in V, times in s. A trial ends at low and high; the end stop is at +-end.
 # return_right and return_left take the piston back; rest is how long it rests, recorded, before each trial.
-# closed is the signal that closes the valve; all other voltages are counted from it.
+# closed is the signal that closes the valve; all other voltages are counted from it. A rig does not move without it.
 """
 
 
 def programme_text(programme: Programme) -> str:
     """The YAML file of a programme."""
     head = _HEAD.format(experiment=programme.experiment, machine=programme.machine)
-    common = {"experiment": programme.experiment, "machine": programme.machine}
+    common: dict[str, Any] = {"experiment": programme.experiment, "machine": programme.machine}
     if programme.prepare:
         common["prepare"] = programme.prepare
-    numbers = {name: round(float(getattr(programme, name)), 6) for name in _NUMBERS}
+    if programme.blind:
+        common["blind"] = True
+    said = [name for name in _NUMBERS if name != "closed" or programme.says_closed or programme.closed]
+    numbers = {name: round(float(getattr(programme, name)), 6) for name in said}
     lines = ["trials:", *(f"  - {_flow(_trial_dict(trial))}" for trial in programme.trials)]
     return head + yaml.safe_dump({**common, **numbers}, sort_keys=False) + "\n".join(lines) + "\n"
 
@@ -65,7 +68,7 @@ def read_programme(path: str | Path) -> Programme:
 
 
 def _programme(document: object) -> Programme:
-    given = _section(document, "a programme", {"experiment", "machine", "prepare", "trials", *_NUMBERS})
+    given = _section(document, "a programme", {"experiment", "machine", "prepare", "blind", "trials", *_NUMBERS})
     if not isinstance(given.get("trials"), list):
         raise UsageError("there is no list 'trials'")
     numbers: dict[str, Any] = {
@@ -75,16 +78,15 @@ def _programme(document: object) -> Programme:
     }
     trials = tuple(_trial(entry) for entry in given["trials"])
     texts: dict[str, Any] = {name: str(given.get(name) or "") for name in ("experiment", "machine", "prepare")}
-    return Programme(trials=trials, **texts, **numbers)
+    blind = _flag(given, "blind", "the programme")
+    return Programme(trials=trials, blind=blind, says_closed="closed" in given, **texts, **numbers)
 
 
 def _trial(entry: object) -> Trial:
     given = _section(entry, "a trial", _TRIAL)
     name = str(given.get("name", ""))
     numbers = {key: _number(given, key, unit) for key, unit in {"patience": "s", "travel": "m"}.items() if key in given}
-    anywhere = given.get("anywhere", False)
-    if not isinstance(anywhere, bool):
-        raise UsageError(f"trial {brief(name)}: anywhere is {brief(anywhere)}; it takes true or false")
+    anywhere = _flag(given, "anywhere", f"trial {brief(name)}")
     try:
         return Trial(name, voltages.from_dict(given), _number(given, "seconds", "s"), anywhere=anywhere, **numbers)
     except UsageError as error:
@@ -97,6 +99,13 @@ def _section(value: object, what: str, allowed: Iterable[str]) -> dict[str, Any]
     for name in value:
         if name not in allowed:
             raise UsageError(f"{unknown_name('entry', str(name), allowed)} ({what})")
+    return value
+
+
+def _flag(given: dict[str, Any], name: str, where: str) -> bool:
+    value = given.get(name, False)
+    if not isinstance(value, bool):
+        raise UsageError(f"{where}: {name} is {brief(value)}; it takes true or false")
     return value
 
 

@@ -23,8 +23,9 @@ _STILL, _MOVING, _REST = 1e-3, 5e-3, 0.15  # m/s before a breakaway; m/s after i
 class Record:
     """An experiment from its beginning, returns and rests included. Arrays are (n,), `INTERVAL` apart.
 
-    frame (n, 4): y, v, p_a, p_b as the sensors show them, v by differences; voltage (n,): held from each sample on;
-    recorded: whether a trial was running; breakaways: last samples before the piston slips; ways: their directions.
+    frame (n, 2 + chambers): y, v and pressures as the sensors show them, v by differences; voltage (n,): held on from
+    each sample; recorded: whether a trial was running; breakaways: last samples before the piston slips; ways: their
+    directions.
     """
 
     part: Part
@@ -57,7 +58,8 @@ def record(part: Part, truth: Model) -> Record | str:
     voltage = _held(rehearsal, time)
     states = np.vstack([machine.state(), machine.simulate(voltage[:-1], machine.state(), sample_time=INTERVAL)])
     seen = machine.outputs(states, voltage)
-    frame = np.stack([seen["y_measured"], states[:, 1], seen["p_a_measured"], seen["p_b_measured"]], axis=1)
+    pressures = [seen[f"{chamber.state}_measured"] for chamber in machine.chambers]
+    frame = np.stack([seen["y_measured"], states[:, 1], *pressures], axis=1)
     frame[:, 1] = np.gradient(frame[:, 0], INTERVAL)
     recorded = np.zeros(count + 1, dtype=bool)
     for begin, end in rehearsal.recorded:

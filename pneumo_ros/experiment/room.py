@@ -4,6 +4,7 @@ from typing import TypedDict
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import check_one_command
 
 MARGIN = 0.1  # of the stroke, before either end: a piston coasts this far after its valve closes, as in a fault
 END = 0.005  # of the stroke, before either end: no piston coasts this far
@@ -29,6 +30,7 @@ def room_of(model: Model, margin: float = MARGIN) -> Room:
         raise UsageError(
             f"{model.name} has no chambers, so no valve moves it; give --model a machine file with chambers"
         )
+    check_one_command(model)
     stroke = model["piston.stroke"]
     high = (0.5 - margin) * stroke
     right, left = dead_zone(model)

@@ -10,13 +10,12 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment.imitation import imitate, unknowns
 from pneumo_ros.experiment.offers import Offer, menu
 from pneumo_ros.experiment.record import Record, record
-from pneumo_ros.experiment.whitened import FAMILIES, Noise, Whitened
+from pneumo_ros.experiment.whitened import Noise, Whitened, families
 from pneumo_ros.plant import Model
 
 CLEAR = 5.0  # noise deviations that distinguish effects for certain; fewer than NOTHING decide nothing
 NOTHING = 2.0
 PRIOR = "prior knowledge of the other parameters"
-WHERE = (*FAMILIES, PRIOR)
 
 Progress = Callable[[float], None]  # called with the share that is done, 0 to 1
 
@@ -105,4 +104,4 @@ def _judge(offer: Offer, models: tuple[Model, Model], effects: tuple[str, str], 
         duration = max(duration, sum(one.duration for one in records if isinstance(one, Record)))
     totals = [float(np.sqrt(sum(left))) for left in found]
     least = found[int(np.argmin(totals))]
-    return Separation(offer, totals[0], totals[1], WHERE[int(np.argmax(least))], duration)
+    return Separation(offer, totals[0], totals[1], (*families(models[0]), PRIOR)[int(np.argmax(least))], duration)

@@ -81,8 +81,37 @@ class Sweep:
         return f"cosine of {self.amplitude:.2f} V, {self.first:.2g} to {self.last:.2g} Hz"
 
 
-Voltage = Constant | Steps | Sweep
-FORMS = "constant: V, steps: [[seconds, V], ...] or sweep: {amplitude: V, first: Hz, last: Hz, seconds: s}"
+@dataclass(frozen=True)
+class Ramps:
+    """Rises in `seconds` from 0 to `volts` [V] until the piston has moved by `way` [m], then the other way, in turn.
+
+    After the first two, the way is twice as long. The conductor turns it round; here, nothing has moved.
+    """
+
+    volts: float
+    way: float
+    seconds: float
+
+    def at(self, time: float) -> float:
+        """Magnitude [V] at `time` [s] since this ramp began."""
+        return self.volts * min(max(time, 0.0) / self.seconds, 1.0)
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude [V]."""
+        return abs(self.volts)
+
+    @property
+    def text(self) -> str:
+        """What it is, for a person."""
+        return f"ramps up to {self.volts:.2f} V until {1e3 * self.way:.0f} mm, to and fro"
+
+
+Voltage = Constant | Steps | Sweep | Ramps
+FORMS = (
+    "constant: V, steps: [[seconds, V], ...], sweep: {amplitude: V, first: Hz, last: Hz, seconds: s} or "
+    "ramps: {volts: V, way: m, seconds: s}"
+)
 
 
 def as_dict(voltage: Voltage) -> dict[str, Any]:
@@ -91,14 +120,17 @@ def as_dict(voltage: Voltage) -> dict[str, Any]:
         return {"constant": voltage.volts}
     if isinstance(voltage, Steps):
         return {"steps": [list(level) for level in voltage.levels]}
+    if isinstance(voltage, Ramps):
+        return {"ramps": {k: getattr(voltage, k) for k in ("volts", "way", "seconds")}}
     return {"sweep": {k: getattr(voltage, k) for k in ("amplitude", "first", "last", "seconds")}}
 
 
 def from_dict(given: dict[str, Any]) -> Voltage:
-    """The voltage that the entries `constant`, `steps` or `sweep` describe. Raises UsageError unless it is exactly one
-    of them, with finite numbers.
+    """The voltage that the entries `constant`, `steps`, `sweep` or `ramps` describe.
+
+    Raises UsageError unless it is exactly one of them, with finite numbers.
     """
-    kinds = [kind for kind in ("constant", "steps", "sweep") if kind in given]
+    kinds = [kind for kind in ("constant", "steps", "sweep", "ramps") if kind in given]
     try:
         if kinds == ["constant"]:
             return _checked(Constant(float(given["constant"])))
@@ -106,6 +138,8 @@ def from_dict(given: dict[str, Any]) -> Voltage:
             return _checked(Steps(tuple((float(seconds), float(volts)) for seconds, volts in given["steps"])))
         if kinds == ["sweep"]:
             return _checked(Sweep(**{key: float(value) for key, value in given["sweep"].items()}))
+        if kinds == ["ramps"]:
+            return _checked(Ramps(**{key: float(value) for key, value in given["ramps"].items()}))
     except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise UsageError(f"{kinds[0]} is {brief(given[kinds[0]])}; a trial takes {FORMS}") from error
     raise UsageError(f"a trial takes one of {FORMS}; given: {', '.join(kinds) or 'none of them'}")
@@ -120,6 +154,8 @@ def _checked(voltage: Voltage) -> Voltage:
     elif isinstance(voltage, Sweep):
         lengths = [voltage.seconds]
         numbers += [voltage.first, voltage.last]
+    elif isinstance(voltage, Ramps):
+        lengths = [voltage.seconds, voltage.way]
     if not all(map(math.isfinite, (*numbers, *lengths))) or min(lengths, default=0.0) <= 0.0:
         raise ValueError
     return voltage

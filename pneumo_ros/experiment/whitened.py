@@ -16,10 +16,17 @@ from numpy.typing import NDArray
 from pneumo_ros.equations.breakaway import UNSEEN, force_spread
 from pneumo_ros.experiment.record import INTERVAL, Mask, Record
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.compose import SENSED
 
 Array = NDArray[np.float64]
 
-FAMILIES = ("momentum while sliding", "pressure in chamber a", "pressure in chamber b", "force at breakaway")
+
+def families(model: Model) -> tuple[str, ...]:
+    """What is judged of a machine, in the order of `Whitened.residuals`."""
+    pressures = (f"pressure in chamber {chamber.side}" for chamber in model.chambers)
+    return ("momentum while sliding", *pressures, "force at breakaway")
+
+
 NOISE_RATE = 1000.0  # Hz, sample rate for which noise is given
 _STEP = 2e-3  # s, of the integration along the motion
 _SLIDE_SAMPLES, _HOLD_SAMPLES = 25, 125  # samples: 0.1 s of sliding, 0.5 s of chamber pressure
@@ -56,7 +63,7 @@ class Whitened:
         self._scatter = self._scatter_of_breakaways(machine)
 
     def residuals(self, model: Model) -> list[Array]:
-        """One array per family (`FAMILIES`), in noise deviations, within +-1e6; NaN counts as 1e6."""
+        """One array per family (`families`), in noise deviations, within +-1e6; NaN counts as 1e6."""
         with np.errstate(all="ignore"):
             found = self._residuals(self.record.part.machine(model))
         return [np.clip(np.nan_to_num(part, nan=1e6), -1e6, 1e6) for part in found]
@@ -67,7 +74,7 @@ class Whitened:
         force = np.zeros(len(frame))
         force[1:-1] = self._mass * (np.diff(frame[:, 0], 2) / INTERVAL**2 - acceleration)
         found = [np.einsum("sij,sj->si", self._whitener, force[self._slides[:, 1:-1]]).ravel()]
-        for column in (2, 3):
+        for column in range(2, machine.frame):
             left = np.cumsum(np.diff(frame[:, column], prepend=frame[0, column]) - INTERVAL * claimed[:, column])
             pieces = left[self._holds]
             found.append(((pieces - pieces.mean(axis=1, keepdims=True)) / self._noise[1]).ravel())
@@ -75,7 +82,7 @@ class Whitened:
         return found
 
     def _along(self, model: Model) -> tuple[Array, Array, Array]:
-        """Frame without the model's sensor effects, states and mean derivatives: (n, 4), (n, states), (n, states).
+        """Frame without the model's sensor effects, states and mean derivatives: (n, frame), (n, states), (n, states).
 
         Errors and delays of sensors are subtracted from the signals to first order.
         """
@@ -84,9 +91,11 @@ class Whitened:
         if not _alters_signals(model):
             return frame, states, claimed
         seen = model.outputs(states, self.record.voltage)
-        wrong = [seen[f"{name}_measured"] - states[:, i] for name, i in (("y", 0), ("p_a", 2), ("p_b", 3))]
         meant = frame.copy()
-        meant[:, (0, 2, 3)] -= np.stack(wrong, axis=1)
+        for reading, state in SENSED.items():
+            if state in model.states:
+                column = model.states.index(state)
+                meant[:, column] -= seen[reading] - states[:, column]
         meant[:, 1] = np.gradient(meant[:, 0], INTERVAL)
         return meant, *self._follow(model, meant)
 
@@ -121,7 +130,7 @@ class Whitened:
         first = (eye[2] - eye[0]) / (2.0 * INTERVAL)
         slope = self._slope(model)[self._slides].mean(axis=1) if len(self._slides) else np.zeros(0)
         by_position = self._noise[0] * (second + slope[:, None, None] * first)
-        by_pressure = self._noise[1] ** 2 * (model["piston.area_a"] ** 2 + model["piston.area_b"] ** 2)
+        by_pressure = self._noise[1] ** 2 * sum(model[chamber.area] ** 2 for chamber in model.chambers)
         covariance = by_position @ np.swapaxes(by_position, 1, 2) + by_pressure * np.eye(rows)
         return np.linalg.inv(np.linalg.cholesky(covariance))
 
@@ -136,7 +145,8 @@ class Whitened:
 
     def _scatter_of_breakaways(self, model: Model) -> Array:
         at = self.record.breakaways[self._events]
-        drive = model["piston.area_a"] * self.record.frame[:, 2] - model["piston.area_b"] * self.record.frame[:, 3]
+        areas = [chamber.way * model[chamber.area] for chamber in model.chambers]
+        drive = self.record.frame[:, 2:] @ np.array(areas)
         before = np.maximum(at - round(UNSEEN / INTERVAL), 0)
         return np.asarray(force_spread((drive[at] - drive[before]) / UNSEEN))
 
@@ -144,7 +154,7 @@ class Whitened:
 def _alters_signals(model: Model) -> bool:
     """Whether sensors of the model show something else than the states."""
     written = {name for effect in model.composition.effects for f in effect.functions.values() for name in f.writes}
-    return not written.isdisjoint(("y_measured", "p_a_measured", "p_b_measured"))
+    return not written.isdisjoint(SENSED)
 
 
 def _pieces(wanted: Mask, length: int) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ from pneumo_ros.export.signature import number_text
 from pneumo_ros.export.structs import structs
 from pneumo_ros.export.templates import filled
 from pneumo_ros.export.translation import functions_text
+from pneumo_ros.plant.actuator import SIDES
 
 
 def c_files(machine: Exported, header: str) -> tuple[str, str]:
@@ -61,7 +62,9 @@ def _effort(machine: Exported) -> str:
     if machine.model.force_driven:
         return "o->drive"
     area_a, area_b, p_atm = "p->piston.area_a", "p->piston.area_b", "p->air.atmospheric_pressure"
-    return f"(({area_a} * x->p_a) - ({area_b} * x->p_b)) - ({p_atm} * ({area_a} - {area_b}))"
+    pressures = {chamber.side: f"x->{chamber.state}" for chamber in machine.model.chambers}
+    p_a, p_b = (pressures.get(side, p_atm) for side in SIDES)
+    return f"(({area_a} * {p_a}) - ({area_b} * {p_b})) - ({p_atm} * ({area_a} - {area_b}))"
 
 
 def _start(machine: Exported) -> list[str]:

@@ -74,8 +74,7 @@ class Exported:
         found = {name: state for effect in self.model.composition.effects for name, state in effect.states.items()}
         rest = dict(zip(self.model.states, self.model.state().tolist(), strict=True))
         follows = {n: s.initial for n, s in found.items() if isinstance(s.initial, str)}
-        if not self.model.force_driven:
-            follows |= dict.fromkeys(("p_a", "p_b"), "air.atmospheric_pressure")
+        follows |= dict.fromkeys((chamber.state for chamber in self.model.chambers), "air.atmospheric_pressure")
         return tuple(Variable(n, s.unit, s.meaning, rest[n], follows=follows.get(n, "")) for n, s in found.items())
 
     @cached_property

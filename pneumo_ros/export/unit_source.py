@@ -11,8 +11,8 @@ MAIN = "all.c"
 
 
 _UNFIT = """\
-    if (p->chambers.volume_{side} <= 0.5 * p->piston.stroke * p->piston.area_{side}) {{
-        return "chamber {side} has no volume left at its end: increase chambers.volume_{side}";
+    if (p->{volume} <= 0.5 * p->piston.stroke * p->{area}) {{
+        return "chamber {side} has no volume left at its end: increase {volume}";
     }}"""
 
 
@@ -43,7 +43,9 @@ def _variables(machine: Exported, token: str) -> str:
         ),
         nominals=", ".join(number_text(nominal(state)) for state in machine.states),
         cases="\n".join(map(_case, rows)), follow="\n".join(_follow(machine)),
-        unfit="" if machine.model.force_driven else "\n".join(_UNFIT.format(side=side) for side in "ab"),
+        unfit="\n".join(
+            _UNFIT.format(side=one.side, volume=one.volume, area=one.area) for one in machine.model.chambers
+        ),
     )  # fmt: skip
 
 

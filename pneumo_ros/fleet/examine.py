@@ -11,6 +11,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.reading.read import read_runs
+from pneumo_ros.reading.rig_file import read_rig, reading_of
 from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.runs.run import Run
 
@@ -18,8 +19,12 @@ HELD = "hold"  # start of the names of held-out recordings
 NORMAL = 1.96  # deviations of a 95 % interval
 
 
-def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing: bool) -> dict[str, Any]:
+def examine(
+    paths: Sequence[str], model: str, effects: Sequence[str], diagnosing: bool, rig_file: str = ""
+) -> dict[str, Any]:
     """Results of the recordings at `paths`, as JSON; `model` and `effects` are files or a shipped name.
+
+    `rig_file` says how they were recorded.
 
     parameters: dotted name -> value and 95 % interval. added: effects that held-out recordings support, with those that
     explain as much. With held-out recordings and `diagnosing`, parameters are those of the model with the added
@@ -27,7 +32,8 @@ def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing
     null. Raises DataError when no recording can be used, UsageError as `load_model`.
     """
     machine = load_model(model, tuple(effects))
-    readings = read_runs(paths, machine)
+    how = reading_of(read_rig(rig_file), machine) if rig_file else None
+    readings = read_runs(paths, machine, how)
     passed = {Path(path).name: why for path, why in readings.refused.items()}
     runs = readings.runs
     held = [run for run in runs if Path(run.name).name.startswith(HELD)]
@@ -38,8 +44,9 @@ def examine(paths: Sequence[str], model: str, effects: Sequence[str], diagnosing
 
 def _identification(machine: Model, runs: list[Run], held: list[Run]) -> dict[str, Any]:
     """Parameters from the constant-voltage runs among all recordings."""
+    every = [*runs, *(run for run in held if run not in runs)]
     try:
-        known = identify(machine, [*runs, *(run for run in held if run not in runs)])
+        known = identify(measuring(machine, every), every)
     except DataError as error:  # no such runs: the campaign is kept
         return {"undetermined": {"all": str(error)}}
     parameters = {}

@@ -11,6 +11,7 @@ from pneumo_ros.records import Bag
 
 LAYOUT = "FOLDER/MACHINE/RECORDING, or FOLDER/MACHINE/CAMPAIGN/RECORDING"
 MACHINE_FILE = "machine.yaml"  # in the folder of a machine: its own model
+RIG_FILE = "rig.yaml"  # likewise: how it is wired, and its machine file where MACHINE_FILE is not there
 _FILES = (".mcap", ".db3")
 
 
@@ -22,6 +23,7 @@ class Campaign(NamedTuple):
     start: int
     paths: tuple[Path, ...]
     machine_file: Path | None
+    rig_file: Path | None = None
 
     @property
     def key(self) -> str:
@@ -36,7 +38,8 @@ class Campaign(NamedTuple):
             for file in sorted(path.iterdir()) if path.is_dir() else (path,):
                 seen = file.stat()
                 digest.update(f"{path.name}/{file.name} {seen.st_size} {seen.st_mtime_ns}\n".encode())
-        digest.update(self.machine_file.read_bytes() if self.machine_file else b"")
+        for own in (self.machine_file, self.rig_file):
+            digest.update(own.read_bytes() if own else b"")
         return f"{self.key} {digest.hexdigest()[:16]}"
 
     @property
@@ -57,11 +60,10 @@ def campaigns(folder: str | Path) -> tuple[list[Campaign], dict[str, str]]:
     passed: dict[str, str] = {}
     found: list[Campaign] = []
     for machine in _folders(root):
-        own = machine / MACHINE_FILE
-        model = own if own.is_file() else None
+        model, rig = (own if (own := machine / name).is_file() else None for name in (MACHINE_FILE, RIG_FILE))
         for name, paths in _groups(machine, passed):
             start = min(start for start, _ in paths)
-            found.append(Campaign(machine.name, name, start, tuple(path for _, path in paths), model))
+            found.append(Campaign(machine.name, name, start, tuple(path for _, path in paths), model, rig))
     if not found:
         why = f"; the last one: {list(passed.values())[-1]}" if passed else ""
         raise DataError(f"{root} holds no recordings of machines; they are laid out as {LAYOUT}{why}")

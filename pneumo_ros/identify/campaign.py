@@ -4,14 +4,19 @@
 2. breakaways from rest -> F_s; the motion that follows them -> v_s, and F_s again
 3. the mass balance of the same stretches -> flow coefficients and dead zone
 4. presliding -> bristle stiffness; Eqs. 15-16, corrected, for parameters it does not show
+
+Machines with on/off valves or regulators have no steady flow: see `by_motion`.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.assembly import ADDED, COULOMB, DRAG, STATIC, STRIBECK, Assembly, Found
+from pneumo_ros.identify.by_motion import fit_by_motion, needs_motion
 from pneumo_ros.identify.flow import coefficients
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
@@ -41,6 +46,8 @@ class Identification:
     points: tuple[MapPoint, ...]
     breakaways: tuple[Breakaway, ...]
     map_fit: MapFit
+    segments: int = 0  # fitted by their motion, where a constant command gives no steady flow
+    misfit: float = float("nan")  # root mean square of their predictions over the noise
 
 
 def identify(
@@ -55,6 +62,8 @@ def identify(
     tell = progress or (lambda share, text: None)
     tell(0.0, "looking for steady stretches")
     _check(model, runs)
+    if needs_motion(model):
+        return _by_motion(model, runs, free, tell)
     windows = tuple(w for run in runs for w in find_windows(model, run))
     points = tuple(map_points(windows))
     _enough(windows, points, "force" if model.force_driven else "voltage")
@@ -72,6 +81,16 @@ def identify(
     unknown = {name: result.unknown[name] for name in asked if name in result.unknown}
     return Identification(
         model, result.model, result.found, unknown, result.correlations, windows, points, breakaways, result.map_fit
+    )
+
+
+def _by_motion(model: Model, runs: Sequence[Run], free: Sequence[str], tell: Progress) -> Identification:
+    """Without a static map: all parameters together, from any motion."""
+    found = fit_by_motion(model, runs, free, tell)
+    empty = np.empty(0)
+    nothing = MapFit({}, {}, np.empty((0, 0)), (), empty, empty, float("nan"), {})
+    return Identification(
+        model, found.model, found.parameters, found.undetermined, {}, (), (), (), nothing, found.segments, found.misfit
     )
 
 

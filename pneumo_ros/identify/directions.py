@@ -28,6 +28,8 @@ def _side(found: Identification, sign: int, free: Sequence[str]) -> dict[str, An
     points = [p for p in found.points if p.velocity * sign > 0.0]
     breakaways = [b for b in found.breakaways if b.direction == sign]
     side: dict[str, Any] = {"points": len(points), "breakaways": len(breakaways), "parameters": {}, "undetermined": {}}
+    if found.segments:
+        return side | {"problem": "the machine has no static map: pulses or regulators change its flow"}
     try:
         fit = fit_map(found.model, points, breakaways, free)
     except DataError as problem:

@@ -12,6 +12,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.identify.confidence import central_jacobian, half_widths
 from pneumo_ros.identify.static_map import MapFit, MapPoint, sliding_friction
 from pneumo_ros.plant import Model
+from pneumo_ros.shooting.physical import physical
 
 Array = NDArray[np.float64]
 
@@ -27,9 +28,10 @@ _STRIBECK = ("lugre_friction.stribeck_velocity", "stribeck_shape.exponent")
 def fit_map(model: Model, points: Sequence[MapPoint], breakaways: Sequence[Breakaway], free: Sequence[str]) -> MapFit:
     """Fit `free` parameters (dotted names) to the map and the breakaway forces by robust least squares.
 
-    Bounds are those of the parameters; the best of 8 starts is taken. Intervals are Student's at 95 %, from the
-    Jacobian with the residuals' own spread. An undetermined parameter keeps its value, with a sentence; its
-    uncertainty widens the intervals of the others. Raises DataError when there are fewer points than parameters to fit.
+    Bounds are those of the parameters; the best of 8 starts is taken. Static friction below Coulomb's is no solution:
+    it is then Coulomb's, as in `shooting.physical`. Intervals are Student's at 95 %, from the Jacobian with the
+    residuals' own spread. An undetermined parameter keeps its value, with a sentence; its uncertainty widens the
+    intervals of the others. Raises DataError when there are fewer points than parameters to fit.
     """
     unknown = _unseen(model, points, breakaways, free)
     seen = tuple(name for name in free if name not in unknown)
@@ -39,7 +41,11 @@ def fit_map(model: Model, points: Sequence[MapPoint], breakaways: Sequence[Break
             "constant-voltage runs: pneumo experiment constant-voltage"
         )
     problem = _MapProblem(model, points, breakaways, seen, tuple(unknown))
-    return problem.result(min(problem.solutions(), key=lambda solution: float(solution.cost)).x, unknown)
+    best = min(problem.solutions(), key=lambda solution: float(solution.cost)).x
+    if not problem.is_physical(best):
+        problem.tied = True
+        best = min(problem.solutions(), key=lambda solution: float(solution.cost)).x
+    return problem.result(best, unknown)
 
 
 def _unseen(
@@ -71,6 +77,7 @@ class _MapProblem:
         held: tuple[str, ...],
     ) -> None:  # fmt: skip
         self.model, self.free, self.names = model, free, (*free, *held)
+        self.tied = False  # whether static friction is raised to Coulomb's where it is lower
         self.velocity = np.array([p.velocity for p in points])
         self.force = np.array([p.force for p in points])
         # noise in velocity acts through the slope of the curve (effective variance, Orear 1982)
@@ -95,10 +102,19 @@ class _MapProblem:
         """Scaled values of all names, those held included."""
         return np.concatenate([x, self.first[len(x) :]])
 
+    def _values(self, x: Array) -> Array:
+        """Values of all names, in their units."""
+        values = self._full(x) * self.scale
+        return physical(self.model, self.names, values) if self.tied else values
+
+    def is_physical(self, x: Array) -> bool:
+        """Whether static friction is not below Coulomb's."""
+        values = self._full(x) * self.scale
+        return bool(np.allclose(physical(self.model, self.names, values), values, rtol=1e-6))
+
     def residuals(self, x: Array) -> Array:
         """Whitened residuals for scaled values of the free or of all parameters: the map, then the breakaways."""
-        values = dict(zip(self.names, (self._full(x) * self.scale).tolist(), strict=True))
-        model = self.model.with_parameters(values)
+        model = self.model.with_parameters(dict(zip(self.names, self._values(x).tolist(), strict=True)))
         sliding = (sliding_friction(model, self.velocity) - self.force) / self.spread
         breaking = (model["lugre_friction.static_friction"] - self.level) / self.level_spread
         return np.concatenate([sliding, breaking])
@@ -122,6 +138,7 @@ class _MapProblem:
         residual = self.residuals(x)
         half, correlation = self._confidence(x, residual)
         x = np.where(x - self.low[: len(x)] < 1e-9, self.low[: len(x)], x)  # exactly on its bound
+        x = self._values(x)[: len(x)] / self.scale[: len(x)]
         values = {name: self.model[name] for name in self.names}
         intervals = {}
         for name, value, h in zip(self.free, (x * self.scale[: len(x)]).tolist(), half.tolist(), strict=True):
@@ -130,6 +147,9 @@ class _MapProblem:
                 unknown[name] = _loose(value, h, self.model.specification(name).unit)
             else:
                 values[name], intervals[name] = value, (max(value - h, least), min(value + h, most))
+        if self.tied:
+            kept = physical(self.model, self.names, np.array([values[name] for name in self.names]))
+            values = dict(zip(self.names, kept.tolist(), strict=True))
         whitened = residual[: len(self.velocity)]
         ratio = float(np.sqrt(np.mean(whitened**2)))
         return MapFit(values, intervals, correlation, self.free, whitened * self.spread, self.spread, ratio, unknown)

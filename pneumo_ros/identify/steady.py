@@ -1,7 +1,7 @@
 """Detection of stretches of constant velocity and constant pressures."""
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from pneumo_ros.equations.equations import moving_mass
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import SIDES
+from pneumo_ros.runs.noise import noise_level
 from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
@@ -32,7 +34,7 @@ class Window:
     position: float  # [m], mean
     velocity: float  # [m/s]
     acceleration: float  # [m/s2]
-    pressure_a: float  # [Pa], mean; NaN when force-driven
+    pressure_a: float  # [Pa], mean; NaN for a side that is no chamber
     pressure_b: float
     slope_a: float  # [Pa/s]
     slope_b: float
@@ -42,6 +44,7 @@ class Window:
     slope_noise: float  # [Pa/s], likewise, of either chamber; NaN when force-driven
     reason: str  # why it is refused, in the same words for every such window; empty when used
     refused: str  # the same with its figures
+    further: tuple[float, ...] = ()  # means of the model's other inputs, in their order
 
     @property
     def used(self) -> bool:
@@ -50,9 +53,12 @@ class Window:
 
 
 def find_windows(model: Model, run: Run, window: float = WINDOW) -> list[Window]:
-    """Cut every interval of constant input into windows of `window` [s] and judge each."""
+    """Cut every interval of constant voltage into windows of `window` [s] and judge each.
+
+    A measured force is never quite constant: there all windows are judged.
+    """
     width = max(round(window / run.sample_time), 8)
-    edges = np.flatnonzero(np.diff(run.held) != 0.0) + 1
+    edges = np.flatnonzero(np.diff(run.held) != 0.0) + 1 if not model.force_driven else np.empty(0, dtype=np.int64)
     bounds = np.concatenate([[0], edges, [len(run) - 1]])
     starts = [s for a, b in itertools.pairwise(bounds) for s in range(int(a), int(b) - width + 1, width)]
     if not starts:
@@ -64,10 +70,12 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
     rows = starts[:, None] + np.arange(width + 1)
     time: Array = np.asarray((np.arange(width + 1) - 0.5 * width) * run.sample_time, dtype=np.float64)
     motion = np.polynomial.polynomial.polyfit(time, run.position[rows].T, 2)  # (3, windows)
-    a, b = (_line(time, signal, rows) for signal in (run.pressure_a, run.pressure_b))
+    lines = {chamber.side: _line(time, run.signals[chamber.signal], rows) for chamber in model.chambers}
+    a, b = (lines.get(side, np.full((2, len(rows)), np.nan)) for side in SIDES)
     position, velocity, acceleration = motion[0], motion[1], 2.0 * motion[2]
-    held = run.held[starts]
-    drive, load, swing = _forces(model, position, velocity, a, b, run.sampled(model.inputs)[starts])
+    held = run.held[rows[:, :-1]].mean(axis=1) if model.force_driven else run.held[starts]
+    inputs = run.sampled(model.inputs)[rows[:, :-1]].mean(axis=1)
+    drive, load, swing = _forces(model, position, velocity, lines, inputs)
     noise = _noise(model, run, width)
     friction = drive - load - moving_mass(model) * acceleration
     span = width * run.sample_time
@@ -91,14 +99,13 @@ def _judge(model: Model, run: Run, starts: NDArray[np.int64], width: int) -> lis
             slope_noise=noise[2],
             reason=refused[i][0],
             refused=refused[i][1],
+            further=tuple(inputs[i, 1:].tolist()),
         )
         for i, s in enumerate(starts)
     ]
 
 
-def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
-    if signal is None:
-        return np.full((2, len(rows)), np.nan)
+def _line(time: Array, signal: Array, rows: NDArray[np.int64]) -> Array:
     # A least-squares slope of position is the velocity's mean under a parabola; pressures are averaged likewise, so
     # that changes during a window do not bias the force against the velocity.
     weight = 1.0 - (time / (time[-1] + time[1] - time[0])) ** 2
@@ -107,15 +114,16 @@ def _line(time: Array, signal: Array | None, rows: NDArray[np.int64]) -> Array:
 
 
 def _forces(
-    model: Model, position: Array, velocity: Array, a: Array, b: Array, held: Array
+    model: Model, position: Array, velocity: Array, lines: Mapping[str, Array], held: Array
 ) -> tuple[Array, Array, Array]:
     """Drive and load force [N] at each window's mean, and the rate of change of the drive force [N/s]."""
     states = np.tile(model.state(), (len(position), 1))
     states[:, 0], states[:, 1] = position, velocity
     swing = np.zeros(len(position))
-    if not model.force_driven:
-        states[:, 2], states[:, 3] = a[0], b[0]
-        swing = model["piston.area_a"] * a[1] - model["piston.area_b"] * b[1]
+    for chamber in model.chambers:
+        pressure, slope = lines[chamber.side]
+        states[:, model.states.index(chamber.state)] = pressure
+        swing += chamber.way * model[chamber.area] * slope
     seen = model.outputs(states, held)
     return seen["drive"], seen["force"], swing
 
@@ -124,11 +132,12 @@ def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
     """Deviations by sensor noise of a window's friction force [N], velocity [m/s] and pressure slope [Pa/s]."""
     noise, span = run.noise, width * run.sample_time
     parts = [moving_mass(model) * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
-    if not model.force_driven:
-        for area, name in (("area_a", "pressure_a_pa"), ("area_b", "pressure_b_pa")):
-            parts.append(model[f"piston.{area}"] * noise[name] * np.sqrt(1.2 / width))
+    for chamber in model.chambers:
+        parts.append(model[chamber.area] * noise[chamber.signal] * np.sqrt(1.2 / width))
+    if model.force_driven:
+        parts.append(noise_level(run.force) * np.sqrt(1.0 / width))
     slope = np.sqrt(12.0 / width) / span  # of a line through white noise of unit size
-    steepest = max(noise.get("pressure_a_pa", np.nan), noise.get("pressure_b_pa", np.nan))
+    steepest = max((noise[chamber.signal] for chamber in model.chambers), default=np.nan)
     return float(np.sqrt(np.sum(np.square(parts)))), float(noise["position_m"] * slope), float(steepest * slope)
 
 

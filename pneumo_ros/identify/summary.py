@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
             {"between": list(pair), "r": r, "strong": bool(abs(r) > STRONG)} for pair, r in found.correlations.items()
         ],
         "map": {"points": _points(found), "curve": _curve(found), **_fit_quality(found), "window_s": WINDOW},
+        "motion": {"segments": found.segments, "misfit": found.misfit} if found.segments else None,
         "runs": [_run(run, [w for w in found.windows if w.run == run.name]) for run in runs],
         "refused": [
             {"run": w.run, "start_s": w.start, "stop_s": w.stop, "input": w.input, "reason": w.reason,
@@ -46,6 +48,9 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
 
 def _fit_quality(found: Identification) -> dict[str, Any]:
     """Distance of the points from the fitted curve."""
+    if not found.points:
+        return {"residual_rms_n": nan, "share_of_force": nan, "ratio_to_noise": nan, "explained_by_noise": True,
+                "fits": True}  # fmt: skip
     rms = float(np.sqrt(np.mean(found.map_fit.residuals**2)))
     share = rms / float(np.median([abs(p.force) for p in found.points]))
     ratio = found.map_fit.ratio

@@ -6,17 +6,19 @@ from dataclasses import dataclass
 
 from pneumo_ros.parts import flow
 from pneumo_ros.parts.figure import GIVEN, Figure
-from pneumo_ros.parts.order import ATMOSPHERE, Order
+from pneumo_ros.parts.order import ATMOSPHERE, REGULATOR, Order
 from pneumo_ros.parts.quantity import GRAVITY
 from pneumo_ros.plant import Library, Model
-from pneumo_ros.plant.effects.valve.choked_flow import NORMAL_DENSITY, ratio_function
+from pneumo_ros.plant.effects.valve.choked_flow import ELLIPSE, NORMAL_DENSITY, ratio_function
 
 RISE = 2.67  # omega t at which a lag with damping ratio 0.7 has gone 90 % of the way
 FASTEST = 1000.0  # rad/s, the largest that `valve_spool_dynamics` takes: no lag
 LEVEL = 1e-3  # rad: an axis tilted by less has no load
 UNSTATED = (  # no recording shows them: a fit leaves them alone
     "lugre_friction.bristle_damping", "arctan_flow.filling_coefficient", "arctan_flow.exhaust_coefficient",
+    "on_off_valves.pulse_frequency",
 )  # fmt: skip
+_LIMITS = ("dead_zone.right_limit", "dead_zone.left_limit")
 _PROBE = 0.01  # share of a figure by which it is changed to see what depends on it
 
 
@@ -56,11 +58,29 @@ def assemble(order: Order, name: str = "new", library: Library | None = None) ->
 
 def effects_of(order: Order) -> list[str]:
     """The effects of the machine, in order."""
-    valve = (["valve_null_offset"] if _closed(order.nominal) else []) + (
-        ["valve_spool_dynamics"] if _frequency(order.nominal) else []
-    )
+    spool = not order.ways and _frequency(order.nominal)
+    valve = [
+        *(["valve_null_offset"] if _closed(order.nominal) else []),
+        *(["valve_spool_dynamics"] if spool else []),
+        *(["dead_zone"] if _proportional(order) else []),
+    ]
+    if order.ways:
+        behind = ["pressure_regulator", "second_regulator"] if order.ways == REGULATOR else ["on_off_valves"]
+    else:
+        behind = []
+    ratios = ["path_critical_ratios"] if _excess(order.nominal) else []
     load = ["constant_load"] if abs(order.nominal["tilt"]) > LEVEL else []
-    return [*valve, "arctan_flow", "choked_flow", "rod_atmospheric_force", *load, "lugre_friction", "end_stop"]
+    return [
+        *valve,
+        "arctan_flow",
+        "choked_flow",
+        *ratios,
+        *behind,
+        "rod_atmospheric_force",
+        *load,
+        "lugre_friction",
+        "end_stop",
+    ]
 
 
 def parameters(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
@@ -79,6 +99,7 @@ def parameters(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
         "chambers.volume_a": area_a * figure["stroke"] * share,
         "chambers.volume_b": area_b * figure["stroke"] * share,
         **_flow(order, figure),
+        **(dict.fromkeys(_LIMITS, figure["overlap"] * _reach(order)) if _proportional(order) else {}),
         "lugre_friction.static_friction": breakaway,
         "lugre_friction.coulomb_friction": sliding,
         "lugre_friction.stribeck_velocity": figure["stribeck_velocity"],
@@ -89,10 +110,47 @@ def parameters(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
         found["constant_load.load"] = figure["mass"] * GRAVITY * math.sin(figure["tilt"])
     if _closed(order.nominal):
         found["valve_null_offset.offset"] = -_closed(figure)
+    if excess := _excess(order.nominal):
+        found["path_critical_ratios.exhaust_excess"] = _excess(figure) or excess
+    if order.ways:
+        return found | (_regulator(figure) if order.ways == REGULATOR else _pulses(order, figure))
     if omega := _frequency(figure):
         found["valve_spool_dynamics.angular_frequency"] = min(omega, FASTEST)
         found["valve_spool_dynamics.damping_ratio"] = figure["spool_damping"]
     return found
+
+
+def _pulses(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
+    """On/off valves by their switching times; the published rate of switching is that of their pulses."""
+    of = {
+        "switch_on": figure.get("switch_on", figure["switching_time"]) * figure["switching"],
+        "switch_off": figure.get("switch_off", figure["switching_time"]) * figure["switching"],
+        "pulse_frequency": figure.get("switching_rate", figure["pulse_frequency"]),
+        "three_way": 1.0 if order.ways == "3/2" else 0.0,
+        "full_signal": figure["full_signal"],
+        "travel": figure["travel"],
+    }
+    return {f"on_off_valves.{name}": value for name, value in of.items()}
+
+
+def _regulator(figure: Mapping[str, float]) -> dict[str, float]:
+    """A regulator; where no range is published, full signal asks for the supply."""
+    reach = figure.get("pressure_high", figure["supply"] - ATMOSPHERE)
+    of = {
+        "pressure_range": reach,
+        "full_signal": figure.get("signal_high", figure["full_signal"]),
+        "angular_frequency": RISE / figure.get("response", figure["regulator_response"]),
+        "damping_ratio": figure["spool_damping"],
+        "dead_band": figure.get("dead_band", figure["regulator_dead_band"]),
+        "band": figure["regulator_band"] * reach,
+    }
+    return {f"pressure_regulator.{name}": value for name, value in of.items()}
+
+
+def _excess(figure: Mapping[str, float]) -> float:
+    """Critical pressure ratio of the exhaust paths above that of the filling paths; 0 where one is not published."""
+    filling, exhaust = figure.get("critical_ratio_filling"), figure.get("critical_ratio_exhaust")
+    return exhaust - filling if filling is not None and exhaust is not None else 0.0
 
 
 def full_signal(order: Order) -> tuple[float, float]:
@@ -107,11 +165,11 @@ def _flow(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
     """ISO 6358 flow through an opening that reaches the published C at full signal."""
     b = figure["critical_ratio"]
     filling, exhaust = _conductances(order, figure)
-    reach = max(abs(end - _closed(order.nominal)) for end in full_signal(order))
-    gain = figure["switched_gain"] if order.switched else figure["linearity"] / reach
+    reach = _reach(order) * (1.0 - (figure["overlap"] if _proportional(order) else 0.0))
+    gain = figure["switched_gain"] if order.switched and not order.ways else figure["linearity"] / reach
     whole = 0.5 * math.pi / math.atan(gain * reach)  # C at an infinite signal over C at the full one
     before, behind = flow.NOMINAL
-    line = NORMAL_DENSITY * before * ratio_function(behind / before, b) / (before - behind) * 2.0 / math.pi
+    line = NORMAL_DENSITY * before * ratio_function(behind / before, b, ELLIPSE) / (before - behind) * 2.0 / math.pi
     return {
         "arctan_flow.filling_coefficient": filling * whole * line,
         "arctan_flow.exhaust_coefficient": exhaust * whole * line,
@@ -120,6 +178,16 @@ def _flow(order: Order, figure: Mapping[str, float]) -> dict[str, float]:
         "choked_flow.conductance_exhaust": exhaust * whole,
         "choked_flow.critical_ratio": b,
     }
+
+
+def _proportional(order: Order) -> bool:
+    """Whether one spool opens in proportion to the signal, beyond its overlap."""
+    return not order.ways and not order.switched
+
+
+def _reach(order: Order) -> float:
+    """Signal [V] from closed to fully open."""
+    return max(abs(end - _closed(order.nominal)) for end in full_signal(order))
 
 
 def _conductances(order: Order, figure: Mapping[str, float]) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from pneumo_ros.parts import wishes
 from pneumo_ros.parts.assemble import assemble, effects_of, full_signal
-from pneumo_ros.parts.order import ATMOSPHERE, DIMENSIONS, Order, of_parts, order_of
+from pneumo_ros.parts.order import ATMOSPHERE, DIMENSIONS, REGULATOR, Order, of_parts, order_of
 from pneumo_ros.parts.quantity import parse, pressure
 from pneumo_ros.parts.shelf import Shelf
 from pneumo_ros.plant import Model
@@ -52,7 +52,7 @@ class Design:
 def design(said: Wishes, shelf: Shelf, name: str = "new") -> Design:
     """The machine of a user's words; UsageError, with what is allowed, for anything that makes none."""
     cylinder, stroke = shelf.cylinder(said.cylinder) if said.cylinder else (None, None)
-    valve = shelf.find(said.valve, "valve") if said.valve else None
+    valve = shelf.find(said.valve, "valve", "regulator") if said.valve else None
     sizes = {"stroke": stroke} if stroke is not None else {}
     for one in DIMENSIONS:
         if (text := getattr(said, one)) is not None:
@@ -67,6 +67,7 @@ def design(said: Wishes, shelf: Shelf, name: str = "new") -> Design:
         supply=pressure(said.supply, "the supply", ATMOSPHERE),
         mass=parse(said.mass, "mass", "the mass", plain="kg", example="10kg"),
         tilt=wishes.tilt(said.mounting),
+        ways="" if valve is None else REGULATOR if valve.kind == REGULATOR else valve.ways,
     )
     read_as = wishes.read_as(said.sensors)
     made = assemble(order, name)
@@ -82,10 +83,20 @@ def _cautions(order: Order) -> list[str]:
             "experiments with this machine file, which close it there, and keep pressure away from the rig while "
             "anything else commands it"
         )
-    if order.switched:
+    if order.ways == REGULATOR:
+        found.append(
+            "each chamber has a regulator: valve/command is the pressure of chamber a, valve_b/command that of chamber "
+            "b, 0 to 10 V for the whole range, and 0 V empties"
+        )
+    elif order.ways:
+        found.append(
+            "commands become pulses of the valves, whose share of a period follows the command, half of it at 0 V; set "
+            "pulse_frequency and phase to those of the driver, or pulse_frequency 0 where the command itself switches"
+        )
+    elif order.switched:
         found.append(
             "this is a switched valve: any command above 1 V extends at full flow, any below -1 V retracts, 0 V closes"
         )
-    if "valve_spool_dynamics" not in effects_of(order):
+    if not order.ways and "valve_spool_dynamics" not in effects_of(order):
         found.append("nothing is known of how fast the valve follows: valve_spool_dynamics is left out")
     return found

@@ -12,7 +12,7 @@ the law above equals C_d A sqrt(2 rho_1 dp) for
 import math
 
 from pneumo_ros.parts.quantity import INCH, PSI
-from pneumo_ros.plant.effects.valve.choked_flow import NORMAL_DENSITY, NORMAL_TEMPERATURE, ratio_function
+from pneumo_ros.plant.effects.valve.choked_flow import ELLIPSE, NORMAL_DENSITY, NORMAL_TEMPERATURE, ratio_function
 
 GAS = 287.0  # J/(kg K), air
 NOMINAL = (7e5, 6e5)  # Pa absolute, before and behind the valve: 6 and 5 bar gauge
@@ -22,12 +22,12 @@ GALLON = 231.0 * INCH**3  # m3, US
 
 def of_nominal_flow(flow: float, b: float) -> float:
     """C [m3/(s Pa)] of a valve with the nominal flow [m3/s at reference conditions] and critical ratio b."""
-    return flow / (NOMINAL[0] * ratio_function(NOMINAL[1] / NOMINAL[0], b))
+    return flow / (NOMINAL[0] * ratio_function(NOMINAL[1] / NOMINAL[0], b, ELLIPSE))
 
 
 def nominal_flow(conductance: float, b: float) -> float:
     """Nominal flow [m3/s at reference conditions] of C [m3/(s Pa)] and b: the inverse of `of_nominal_flow`."""
-    return conductance * NOMINAL[0] * ratio_function(NOMINAL[1] / NOMINAL[0], b)
+    return conductance * NOMINAL[0] * ratio_function(NOMINAL[1] / NOMINAL[0], b, ELLIPSE)
 
 
 def of_kv(kv: float, b: float) -> float:

@@ -62,6 +62,7 @@ def record(part: Part) -> dict[str, Any]:
         for name, f in part.figures.items()
     }  # fmt: skip
     return {
-        "name": part.name, "kind": part.kind, "title": part.title, "opening": part.opening, "file": part.file,
+        "name": part.name, "kind": part.kind, "title": part.title, "opening": part.opening, "ways": part.ways,
+        "file": part.file,
         "figures": figures,
     }  # fmt: skip

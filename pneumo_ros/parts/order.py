@@ -11,16 +11,21 @@ from pneumo_ros.parts.shelf import rules
 
 ATMOSPHERE = 1e5  # Pa
 FLOWS = ("conductance_filling", "nominal_flow", "kv", "cv")  # figures that give the size of a valve, the best first
+REGULATOR = "regulator"
 DIMENSIONS = ("bore", "rod", "stroke")
 
 
 @dataclass(frozen=True)
 class Order:
-    """Figures by name, whether the valve is `switched`, and which figure gives its `flow` (one of FLOWS)."""
+    """Figures by name, whether the valve is `switched`, which figure gives its `flow` (one of FLOWS), and `ways`.
+
+    ways: of on/off valves (one of `part.WAYS`), REGULATOR where each chamber has a pressure regulator, else empty.
+    """
 
     figures: Mapping[str, Figure]
     switched: bool
     flow: str
+    ways: str = ""
 
     @property
     def nominal(self) -> dict[str, float]:
@@ -36,6 +41,7 @@ def order_of(
     supply: float,
     mass: float,
     tilt: float,
+    ways: str = "",
 ) -> Order:
     """The order of a cylinder (bore, rod, stroke), a valve (figures of `part.VALVE`) and its use.
 
@@ -51,7 +57,7 @@ def order_of(
             "(or C, Kv, Cv)"
         )
     known = {**rules(), **_valve(valve, flow), **{name: cylinder[name] for name in DIMENSIONS}, **use}
-    return Order(known, opening == "switched", flow)
+    return Order(known, opening == "switched", flow, ways)
 
 
 def of_parts(

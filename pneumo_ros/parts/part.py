@@ -28,18 +28,24 @@ VALVE = {
     "signal_high": ("voltage", "signal at which port a fills fully"),
     "supply": ("pressure", "supply pressure, gauge"),
     "response": ("time", "time in which the pressure is reached"),
+    "pressure_low": ("pressure", "lowest pressure that it holds, gauge"),
+    "pressure_high": ("pressure", "pressure at full signal, gauge"),
     "dead_band": ("number", "dead band of the pressure, share of the range"),
 }
 CYLINDER = {"bore": ("length", "bore"), "rod": ("length", "diameter of the piston rod")}
 KINDS = {"valve": VALVE, "regulator": VALVE, "cylinder": CYLINDER}
 OPENINGS = ("proportional", "switched")
+WAYS = ("3/2", "2/2")  # of switched valves: two or four of them for a cylinder
 _SOURCE = ("title", "page", "year", "checked")
 _FIGURE = ("value", "unit", "low", "high", "source", "note")
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part by name; `kind` is a key of `KINDS`, `opening` one of `OPENINGS` for valves; file: where it was read."""
+    """A part by name; `kind` is a key of `KINDS`, `opening` one of `OPENINGS` for valves; file: where it was read.
+
+    ways: of on/off valves that serve one chamber, one of `WAYS`; else empty.
+    """
 
     name: str
     kind: str
@@ -47,6 +53,7 @@ class Part:
     opening: str
     figures: Mapping[str, Figure]
     file: str
+    ways: str = ""
 
     def meaning(self, figure: str) -> str:
         """What a figure of this kind of part means."""
@@ -55,13 +62,16 @@ class Part:
 
 def part_of(document: object, file: str) -> Part:
     """The part that a file describes; UsageError, with the nearest names, for anything it cannot be."""
-    data = _section(document, f"part file {file}", ("name", "kind", "title", "opening", "figures", "sources"))
+    data = _section(document, f"part file {file}", ("name", "kind", "title", "opening", "ways", "figures", "sources"))
     name, kind = _text(data, "name", file), _text(data, "kind", file)
     if kind not in KINDS:
         raise UsageError(f"part file {file}: {unknown_name('kind', kind, KINDS)}")
     opening = _text(data, "opening", file) if kind == "valve" else ""
     if kind == "valve" and opening not in OPENINGS:
         raise UsageError(f"part file {file}: opening is {brief(opening)}; it takes {' or '.join(OPENINGS)}")
+    ways = _text(data, "ways", file) if "ways" in data else ""
+    if ways and (ways not in WAYS or opening != "switched"):
+        raise UsageError(f"part file {file}: ways is {brief(ways)}; switched valves take {' or '.join(WAYS)}, or none")
     sources = {
         str(key): source_text(_section(value, f"part file {file}: source {key}", _SOURCE), f"part file {file}")
         for key, value in _section(data.get("sources"), f"part file {file}: sources").items()
@@ -70,7 +80,7 @@ def part_of(document: object, file: str) -> Part:
         str(key): figure_of(value, f"part file {file}: {key}", _dimension(str(key), kind, file), sources)
         for key, value in _section(data.get("figures"), f"part file {file}: figures").items()
     }
-    return Part(name, kind, _text(data, "title", file), opening, _sound(figures, kind, file), file)
+    return Part(name, kind, _text(data, "title", file), opening, _sound(figures, kind, file), file, ways)
 
 
 def figure_of(given: object, where: str, dimension: str, sources: Mapping[str, str], *, rule: str = "") -> Figure:
@@ -111,7 +121,7 @@ def _dimension(name: str, kind: str, file: str) -> str:
 
 def _sound(figures: dict[str, Figure], kind: str, file: str) -> dict[str, Figure]:
     """The figures; UsageError for sizes that are not above 0, and for a rod as thick as the bore."""
-    signals = ("signal_low", "signal_closed", "signal_high", "dead_band", "supply")
+    signals = ("signal_low", "signal_closed", "signal_high", "dead_band", "supply", "pressure_low")
     for name, figure in figures.items():
         if name not in signals and figure.low <= 0.0:
             raise UsageError(f"part file {file}: {name} is {figure.low:g} {figure.unit}; it takes a number above 0")

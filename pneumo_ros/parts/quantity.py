@@ -9,6 +9,7 @@ from pneumo_ros.nearest import unknown_name
 INCH, POUND, PSI = 0.0254, 0.45359237, 6894.757293168  # m, kg, Pa: by definition
 GRAVITY = 9.80665  # m/s2, by definition
 CONDUCTANCE = 1e-8  # m3/(s Pa) in 1 dm3/(s bar)
+LOOP_RESISTANCE = 500.0  # ohm: a signal of 4 to 20 mA counts as 2 to 10 V, the usual resistor of such inputs
 
 UNITS: dict[str, dict[str, float]] = {
     "length": {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": INCH, '"': INCH},
@@ -16,7 +17,7 @@ UNITS: dict[str, dict[str, float]] = {
     "pressure": {"Pa": 1.0, "hPa": 1e2, "mbar": 1e2, "kPa": 1e3, "bar": 1e5, "MPa": 1e6, "psi": PSI},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "frequency": {"Hz": 1.0, "kHz": 1e3},
-    "voltage": {"V": 1.0, "mV": 1e-3},
+    "voltage": {"V": 1.0, "mV": 1e-3, "mA": 1e-3 * LOOP_RESISTANCE},
     "flow": {
         "l/min": 1e-3 / 60.0, "Nl/min": 1e-3 / 60.0, "l/s": 1e-3, "m3/h": 1.0 / 3600.0, "m3/s": 1.0,
         "scfm": 0.3048**3 / 60.0,

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import SECOND, mirrored
 
 Array = NDArray[np.float64]
 ALMOST = 0.98  # of the stroke counts as the whole: what remains is the end's affair
@@ -27,6 +28,8 @@ def stroke_times(model: Model, signal: float, parameters: Array | None = None) -
     x[:, model.states.index("p_b" if out else "p_a")] = supply
     samples = round(LIMIT / SAMPLE)
     voltage = np.full(samples, signal)
+    if SECOND in model.inputs:
+        voltage = np.column_stack([voltage, mirrored(model, voltage)])
     column = [model.states.index("y")]
     y = model.simulate_lanes(voltage, x, q, sample_time=SAMPLE, step=STEP, columns=column)[:, :, 0]
     way = -side * y / stroke[:, None] + 0.5
@@ -51,8 +54,9 @@ def drawn(model: Model, count: int, seed: int = 0) -> Array:
 
 def _least(model: Model, name: str) -> float:
     swept = 0.0
-    if name.startswith("chambers."):
-        swept = 0.5 * model["piston.stroke"] * model[name.replace("chambers.volume", "piston.area")]
+    for chamber in model.chambers:
+        if name == chamber.volume:
+            swept = 0.5 * model["piston.stroke"] * model[chamber.area]
     return swept + LEAST * (model[name] - swept)
 
 

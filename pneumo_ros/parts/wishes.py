@@ -41,11 +41,17 @@ def read_as(sensors: str) -> str:
 
 
 def signal(text: str) -> dict[str, Figure]:
-    """Figures of LOW,CLOSED,HIGH in volts, such as 0,5,10; UsageError unless they rise."""
+    """Figures of LOW,CLOSED,HIGH in volts, such as 0,5,10, or 4,12,20mA; UsageError unless they rise.
+
+    A unit after HIGH alone is that of all three. A current counts as the voltage that it makes in LOOP_RESISTANCE.
+    """
     parts = text.split(",")
     if len(parts) != 3:
-        raise UsageError(f"the signal is {brief(text)}; it takes LOW,CLOSED,HIGH in volts, such as 0,5,10")
-    low, closed, high = (parse(one, "voltage", "the signal", plain="V", example="0,5,10") for one in parts)
+        raise UsageError(f"the signal is {brief(text)}; it takes LOW,CLOSED,HIGH, such as 0,5,10 (volts) or 4,12,20mA")
+    unit = re.sub(r"^[\s\d.eE+-]*", "", parts[2]).strip() or "V"
+    low, closed, high = (
+        parse(one, "voltage", "the signal", plain=unit, example="0,5,10 or 4,12,20mA") for one in parts
+    )
     if not low < closed < high:
         raise UsageError(f"the signal is {brief(text)}; LOW, CLOSED and HIGH rise, such as 0,5,10")
     return {f"signal_{name}": given(v, "V") for name, v in (("low", low), ("closed", closed), ("high", high))}

@@ -6,19 +6,18 @@ import re
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.plant.library import FRAME
-
 if TYPE_CHECKING:
     from pneumo_ros.plant.effect import Effect
     from pneumo_ros.plant.model import Model
 
-ORDER = ("frame", "valve", "line", "chamber", "piston", "friction", "sensor")  # of the parts of a machine
+ORDER = ("frame", "actuator", "valve", "line", "chamber", "piston", "friction", "sensor")  # of the parts of a machine
 
 
 def catalogue(model: "Model") -> dict[str, "type[Effect]"]:
     """Name -> effect: the frame of every machine, then all available effects, room by room."""
     library = model.library
-    found = [library.frame(name) for name in FRAME] + [library.find(name) for name in library.names()]
+    found = [library.part(name) for name in ("piston", "air", *library.actuators())]
+    found += [library.find(name) for name in library.names()]
     found.sort(key=lambda effect: ORDER.index(room(effect)) if room(effect) in ORDER else len(ORDER))
     return {effect.name: effect for effect in found}
 
@@ -69,6 +68,7 @@ def record(effect: "type[Effect]", model: "Model") -> dict[str, Any]:
         "in_model": effect.name in {used.name for used in model.composition.effects},
         "description": inspect.cleandoc(effect.__doc__ or ""),
         "signature": effect.signature,
+        "remedy": effect.remedy,
         "source": effect.source,
         "equations": {name: body(effect, name) for name in effect.functions},
         "helpers": helpers(effect),

@@ -13,23 +13,33 @@ take a rational approximation (`maths.damped`) that also decays. Both are stable
 """
 
 import builtins
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import maths
+from pneumo_ros.plant.actuator import SIDES, Actuator, Chamber
+from pneumo_ros.plant.commanded import commanded_states, commanding_parameters, jumping, memories
 from pneumo_ros.plant.effect import Effect, Function, Parameter
 from pneumo_ros.plant.emit import module_text
 from pneumo_ros.plant.reach import inputs_of
 from pneumo_ros.plant.signals import SIGNALS
 
-OBSERVED = (
-    "drive", "force", "friction", "static_level", "added_mass", "opening", "port_flow_a", "port_flow_b",
-    "y_measured", "p_a_measured", "p_b_measured",
-)  # fmt: skip
-OBSERVED_WITHOUT_CHAMBERS = ("drive", "force", "friction", "static_level", "added_mass", "y_measured")
-SENSED = {"y_measured": "y", "p_a_measured": "p_a", "p_b_measured": "p_b"}  # signal -> state that its sensor measures
+_MECHANICS = ("drive", "force", "friction", "static_level", "added_mass")
+SENSED = {"y_measured": "y", **{f"p_{side}_measured": f"p_{side}" for side in SIDES}}  # reading -> state
+
+
+def observed_of(chambers: Sequence[Chamber]) -> tuple[str, ...]:
+    """The observed signals of a machine with these chambers."""
+    valve = ("opening", *(chamber.flow for chamber in chambers)) if chambers else ()
+    return (*_MECHANICS, *valve, "y_measured", *(f"{chamber.state}_measured" for chamber in chambers))
+
+
+def actuator_of(effects: Iterable[type[Effect]]) -> type[Actuator] | None:
+    """The actuator among some effects; None for a machine that a measured force drives."""
+    return next((effect for effect in effects if issubclass(effect, Actuator)), None)
 
 
 @dataclass(frozen=True)
@@ -38,7 +48,9 @@ class Composition:
 
     `inputs`: U, then the measured signals that the effects read; `measured`: signals that were asked for in place of a
     constant; `sensed` holds the states that sensors measure;
-    `true_sensors`: no effect changes the readings.
+    `true_sensors`: no effect changes the readings. `commanded`: states that follow from the inputs alone, `commanding`:
+    the parameters on which they depend, `memories`: states that move in jumps, `jumping`: whether one jumps within a
+    step, so that only short steps see it well.
     """
 
     effects: tuple[type[Effect], ...]
@@ -50,6 +62,20 @@ class Composition:
     sensed: tuple[str, ...]
     true_sensors: bool
     text: str
+    commanded: tuple[str, ...] = ()
+    commanding: frozenset[str] = frozenset()
+    memories: frozenset[str] = frozenset()
+    jumping: bool = False
+
+    @property
+    def actuator(self) -> type[Actuator] | None:
+        """What actuates the machine; None where a measured force does."""
+        return actuator_of(self.effects)
+
+    @property
+    def chambers(self) -> tuple[Chamber, ...]:
+        """The chambers of its actuator, in the order of their pressures among the states."""
+        return self.actuator.chambers if self.actuator else ()
 
     def parameter(self, dotted: str) -> Parameter:
         """Specification of a parameter by its dotted name; UsageError with the nearest names."""
@@ -63,7 +89,7 @@ class Composition:
 # names the generated module uses itself
 _WORDS = """x q u h k s i j b c X _ out half middle elapsed inputs row first t0 stride parts steps values np math LANES
 entry inline derivatives after_step observation sensing step step_lanes run run_lanes follow rates observe sense
-interval"""
+interval lead lead_derivatives lead_after at"""
 _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 
 
@@ -73,6 +99,8 @@ class Resolver:
     def __init__(self, effects: tuple[type[Effect], ...], measured: tuple[str, ...] = ()) -> None:
         self.effects, self.measured = effects, measured
         self.states: dict[str, type[Effect]] = {}
+        actuator = actuator_of(effects)
+        self.open_side = actuator.open_side if actuator else {}
         self.inputs = inputs_of(effects, measured)
         self.owners: dict[str, list[str]] = {}
         self.writers: dict[str, list[tuple[type[Effect], str]]] = {}  # name -> effects, and the function of each
@@ -141,7 +169,8 @@ class Resolver:
     def check(self, function: Function, effect: type[Effect]) -> None:
         """UsageError, with the nearest known names, for an unknown argument."""
         for name in function.reads:
-            if name not in self.states and name not in SIGNALS and self.parameter(name, effect) is None:
+            known_here = name in self.states or name in SIGNALS or name in self.open_side
+            if not known_here and self.parameter(name, effect) is None:
                 known = [*self.states, *SIGNALS, *self.owners]
                 raise UsageError(f"effect {effect.name}: {unknown_name('argument', name, known)}")
 
@@ -160,9 +189,15 @@ def compose(effects: tuple[type[Effect], ...], measured: tuple[str, ...] = ()) -
                 resolver.check(effect.functions[key], effect)
     parameters = tuple(f"{effect.name}.{key}" for effect in effects for key in effect.parameters)
     states = tuple(resolver.states)
-    observed = OBSERVED if {"p_a", "p_b"} <= set(states) else OBSERVED_WITHOUT_CHAMBERS
+    actuator = actuator_of(effects)
+    observed = observed_of(actuator.chambers if actuator else ())
     signals = tuple(name for name, state in SENSED.items() if state in states)
     true_sensors = not any(name in resolver.writers for name in signals)
-    text = module_text(resolver, parameters, observed, () if true_sensors else signals)
+    commanded = commanded_states(effects, measured) if actuator else ()  # a measured force is no command
+    text = module_text(resolver, parameters, observed, () if true_sensors else signals, commanded)
     sensed = tuple(SENSED[name] for name in signals)
-    return Composition(effects, states, parameters, resolver.inputs, measured, observed, sensed, true_sensors, text)
+    return Composition(
+        effects, states, parameters, resolver.inputs, measured, observed, sensed, true_sensors, text, commanded,
+        commanding_parameters(effects, commanded, measured) if commanded else frozenset(), memories(effects),
+        jumping(effects, commanded),
+    )  # fmt: skip

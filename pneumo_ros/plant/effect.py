@@ -41,11 +41,12 @@ ROLES = ("", "delay", "damping")  # of a parameter, where its unit and neutral v
 
 @dataclass(frozen=True)
 class Parameter:
-    """A physical constant of an effect: default value in `unit`, meaning, and the closed range of allowed values.
+    """A physical constant of an effect: `default` value in `unit`, `meaning`, and the allowed values, `low` to `high`.
 
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
     time by which a signal is late, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
-    role. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral.
+    role. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral. `chosen`:
+    whoever builds or wires the machine chooses it, so that fits leave it alone.
     """
 
     default: float
@@ -56,6 +57,7 @@ class Parameter:
     neutral: float | None = None
     role: str = ""
     optional: bool = False
+    chosen: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "optional", self.optional or self.default == self.neutral)
@@ -120,8 +122,11 @@ class Effect:
     states: ClassVar[dict[str, State]] = {}
     functions: ClassVar[dict[str, Function]] = {}
     signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
+    remedy: ClassVar[str] = ""  # what to do at the machine when it is found, one line
     source: ClassVar[str] = ""
     transmission: ClassVar[bool] = False  # a candidate only for machines that a measured force drives
+    part: ClassVar[bool] = False  # how a machine is built: its machine file says so, and no recording is asked for it
+    entered: ClassVar[str] = ""  # what to write into a machine file, for an effect that recordings cannot show
     contains: ClassVar[tuple[str, ...]] = ()  # simpler effects that it equals at some of its values
 
     def __init_subclass__(cls) -> None:

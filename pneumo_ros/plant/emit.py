@@ -6,6 +6,7 @@ from pneumo_ros.plant import maths
 from pneumo_ros.plant.entries import LANES, lanes_text, pointwise_text, run_text, sense_text
 from pneumo_ros.plant.flow import FlowWriter
 from pneumo_ros.plant.following import follow_lanes_text, follow_text
+from pneumo_ros.plant.leading import lead_texts
 from pneumo_ros.plant.source import SourceBook
 from pneumo_ros.plant.stepping import step_text
 
@@ -25,9 +26,16 @@ LANES = {lanes}
 
 
 def module_text(
-    resolver: "Resolver", parameters: tuple[str, ...], observed: tuple[str, ...], sensed: tuple[str, ...]
+    resolver: "Resolver",
+    parameters: tuple[str, ...],
+    observed: tuple[str, ...],
+    sensed: tuple[str, ...],
+    commanded: tuple[str, ...],
 ) -> str:
-    """Text of the whole module for the effects of `resolver`; `sensed`: readings, if an effect changes one of them."""
+    """Text of the whole module for the effects of `resolver`.
+
+    `sensed`: readings, if an effect changes one of them; `commanded`: states that follow from the inputs alone.
+    """
     book = SourceBook()
     names = [dotted.replace(".", "__") for dotted in parameters]
     states = list(resolver.states)
@@ -38,6 +46,7 @@ def module_text(
     after = _after_step(resolver, book, states, names)
     observation = _observation("observation", resolver, book, states, observed, names)
     sensing = _observation("sensing", resolver, book, states, sensed, names) if sensed else ""
+    lead = lead_texts(resolver, book, commanded, names) if commanded else []
     listed = ", ".join(effect.name for effect in resolver.effects)
     parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
     inputs = list(resolver.inputs)
@@ -48,6 +57,7 @@ def module_text(
     parts += [pointwise_text("observe", "observation", states, inputs, len(observed), names)]
     if sensed:
         parts += [sensing, sense_text(states, inputs, len(sensed), names)]
+    parts += lead
     return "\n\n".join(parts) + "\n"
 
 

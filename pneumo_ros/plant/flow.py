@@ -29,6 +29,8 @@ class FlowWriter:
         """Variable that holds `name` (state, signal, derivative or parameter), after writing the lines it needs."""
         if name in self.resolver.states:
             return name
+        if name in self.resolver.open_side:
+            return self._open_side(name)
         if effect is not None and name in effect.parameters:
             return f"{effect.name}__{name}"
         if name in SIGNALS or name.startswith(("der_", "rate_")):
@@ -36,6 +38,11 @@ class FlowWriter:
         variable = self.resolver.parameter(name, effect)
         assert variable is not None, name
         return variable
+
+    def _open_side(self, name: str) -> str:
+        """What stands for a name of a side that is no chamber: a constant, or the signal that is there."""
+        there = self.resolver.open_side[name]
+        return self.value(there) if there in SIGNALS else there
 
     def _signal(self, name: str) -> str:
         if name not in self._done:
@@ -125,7 +132,8 @@ class FlowWriter:
 
     def _argument(self, name: str, effect: type[Effect], function: str) -> str:
         """Variable of an argument; for a signal that the function rewrites, its value after the rewrites before."""
-        changes = self._changes(name) if name in effect.functions[function].writes and name in SIGNALS else []
+        rewrites = name in effect.functions[function].writes and name in SIGNALS
+        changes = self._changes(name) if rewrites and name not in self.resolver.open_side else []
         if (effect, function) in changes:
             return self._after(name, changes.index((effect, function)))
         return self.value(name, effect)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pneumo_ros.plant.entries import LANES, take, unpack
-from pneumo_ros.plant.library import FRAME
+from pneumo_ros.plant.library import is_part
 from pneumo_ros.plant.stepping import evaluate, half_step, is_velocity, kick, whole_step
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def _split(resolver: "Resolver", states: list[str]) -> tuple[list[str], list[str]]:
     """The frame's states, which are measured, and the effects' own."""
-    own = [s for s in states if resolver.states[s].name not in FRAME]
+    own = [s for s in states if not is_part(resolver.states[s])]
     return [s for s in states if s not in own], own
 
 

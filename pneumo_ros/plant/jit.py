@@ -27,7 +27,7 @@ if PURE_PYTHON:
 else:
     try:
         import numba
-        from llvmlite import ir
+        from llvmlite import binding, ir
         from numba.extending import intrinsic
     except ImportError as error:
         raise PneumoError(
@@ -41,6 +41,13 @@ else:
     njit: Any = numba.njit  # its stubs do not know all its options
     inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
     entry = njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
+
+    # LLVM gives up merging the memory checks of a loop after 100 comparisons; with forty effects, loops over lanes
+    # would stay scalar and take eight times as long. LLVM ends the process if an option is given twice.
+    MERGED = "-memory-check-merge-threshold=1000"
+    if MERGED not in vars(binding):
+        binding.set_option("pneumo_ros", MERGED)
+        vars(binding)[MERGED] = True
 
     def _load_without_scipy() -> None:
         """Load what numba loads at its first call, but for scipy.linalg: no kernel needs it, and it takes a quarter."""

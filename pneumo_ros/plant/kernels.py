@@ -57,7 +57,7 @@ def load_kernel(text: str) -> ModuleType:
     name = f"pneumo_kernel_{digest}"
     path = _writable_folder() / f"{name}.py"
     _write_once(path, text)
-    if not any((path.parent / "__pycache__").glob(f"{name}.run-*.nbi")):
+    if not any((path.parent / "__pycache__").glob(f"{name}.*.nbi")):
         _log.info("compiling the plant kernel %s (a few seconds, once)", digest)
     specification = importlib.util.spec_from_file_location(name, path)
     assert specification is not None

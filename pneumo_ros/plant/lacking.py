@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from pneumo_ros.files import yaml_number
-from pneumo_ros.plant.compose import OBSERVED, OBSERVED_WITHOUT_CHAMBERS, Composition
+from pneumo_ros.plant.compose import Composition, actuator_of, observed_of
 from pneumo_ros.plant.effect import Effect
-from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.library import FRAME, USUAL_ACTUATOR, USUAL_FRAME, Library, is_part
 from pneumo_ros.plant.reach import acting, names_in
 from pneumo_ros.plant.signals import SIGNALS
 
@@ -18,6 +18,8 @@ def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
     """
     here = {effect.name for effect in effects}
     known = {name for effect in effects for name in (*effect.states, *effect.parameters, *_written(effect))}
+    actuator = actuator_of(effects)
+    known |= set(actuator.open_side) if actuator else set()
     for effect in effects:
         for name in _read(effect, known):
             owner, _, key = name.rpartition("__")
@@ -30,16 +32,15 @@ def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
 @lru_cache(maxsize=256)
 def without_chambers(effects: tuple[type[Effect], ...], library: Library) -> str | None:
     """A sentence for the first effect that acts on chambers alone, which are not among `effects`; else None."""
-    here = [effect.name for effect in effects]
-    if "chambers" in here:
+    if actuator_of(effects):
         return None
-    chambers = library.frame("chambers")
-    own = [state for effect in effects if effect.name in FRAME for state in effect.states]
-    acts = acting(effects, (*own, *OBSERVED_WITHOUT_CHAMBERS))
+    chambers = library.actuator(USUAL_ACTUATOR)
+    own = [state for effect in effects if is_part(effect) for state in effect.states]
+    acts, observed = acting(effects, (*own, *observed_of(()))), observed_of(chambers.chambers)
     for effect in effects:
         if any(SIGNALS[name].kind in ("input", "measured") for name in _written(effect) & SIGNALS.keys()):
             return None  # which `compose` refuses
-        if effect.name not in acts and effect.name in acting((*effects, chambers), (*own, *chambers.states, *OBSERVED)):
+        if effect.name not in acts and effect.name in acting((*effects, chambers), (*own, *chambers.states, *observed)):
             names = [name for function in effect.functions.values() for name in function.reads]
             key = next((name for name in names if name in (*chambers.states, *chambers.parameters)), "")
             return _sentence(effect.name, f"it reads {key}" if key else "it acts on them alone", chambers)
@@ -86,7 +87,7 @@ def _written(effect: type[Effect]) -> set[str]:
 
 
 def _all(library: Library) -> Iterator[type[Effect]]:
-    yield from (_find(library, name) for name in (*FRAME, *library.names()))
+    yield from (_find(library, name) for name in (*USUAL_FRAME, *library.names()))
 
 
 def _find(library: Library, name: str) -> type[Effect]:

@@ -14,23 +14,31 @@ from types import ModuleType
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.actuator import Actuator
 from pneumo_ros.plant.effect import Effect
 
-FRAME = ("piston", "air", "chambers")  # what every machine has; not part of the effects list
 _ROOMS = ("valve", "line", "chamber", "piston", "friction", "sensor")
+
+
+def _modules(room: str) -> dict[str, str]:
+    """Effect name -> module name, from the files in a folder."""
+    folder = files("pneumo_ros.plant.effects").joinpath(room)
+    names = sorted(file.name for file in folder.iterdir()) if folder.is_dir() else []
+    kept = [name[:-3] for name in names if name.endswith(".py") and not name.startswith("_")]
+    return {name: f"pneumo_ros.plant.effects.{room}.{name}" for name in kept}
 
 
 @lru_cache(maxsize=1)
 def _catalogue_modules() -> Mapping[str, str]:
-    """Effect name -> module name, from the files in the folders."""
-    root = files("pneumo_ros.plant.effects")
-    found = {}
-    for room in _ROOMS:
-        folder = root.joinpath(room)
-        for file in sorted(folder.iterdir(), key=lambda f: f.name) if folder.is_dir() else ():
-            if file.name.endswith(".py") and not file.name.startswith("_"):
-                found[file.name[:-3]] = f"pneumo_ros.plant.effects.{room}.{file.name[:-3]}"
-    return found
+    """The same for all effects of the catalogue."""
+    return {name: module for room in _ROOMS for name, module in _modules(room).items()}
+
+
+_FRAME = _modules("frame") | _modules("actuator")
+ACTUATORS = tuple(_modules("actuator"))  # of which a machine has one, or none if a measured force drives it
+USUAL_ACTUATOR = "chambers"
+USUAL_FRAME = ("piston", "air", USUAL_ACTUATOR)
+FRAME = ("piston", "air", *ACTUATORS)  # sections that are not part of the effects list
 
 
 def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
@@ -96,10 +104,20 @@ class Library:
 
     def names(self) -> tuple[str, ...]:
         """All effect names, sorted."""
-        return tuple(sorted({*_catalogue_modules(), *_installed(), *self._own}))
+        own = {name for name, effect in self._own.items() if not issubclass(effect, Actuator)}
+        return tuple(sorted({*_catalogue_modules(), *_installed(), *own}))
+
+    def actuators(self) -> tuple[str, ...]:
+        """Names of all actuators: the shipped ones, then those of the given files."""
+        return (*ACTUATORS, *(name for name, effect in self._own.items() if issubclass(effect, Actuator)))
 
     def find(self, name: str) -> type[Effect]:
         """The effect of that name; UsageError with the nearest names."""
+        if name in self.actuators():
+            raise UsageError(
+                f"{name} is what actuates the machine: give the machine file a section '{name}', and leave it out of "
+                "'effects'"
+            )
         if name in self._own:
             return self._own[name]
         if name in _catalogue_modules():
@@ -108,7 +126,22 @@ class Library:
             return _installed()[name]
         raise UsageError(f"{unknown_name('effect', name, self.names())} (effects of your own: --effects FILE.py)")
 
+    def part(self, name: str) -> type[Effect]:
+        """Piston, air, or an actuator by its name."""
+        return self._own[name] if name in self._own else self.frame(name)
+
+    def actuator(self, name: str) -> type[Actuator]:
+        """An actuator by its name."""
+        found = self.part(name)
+        assert issubclass(found, Actuator), name
+        return found
+
     @staticmethod
     def frame(name: str) -> type[Effect]:
-        """Piston, air or chambers."""
-        return effects_in(importlib.import_module(f"pneumo_ros.plant.effects.frame.{name}"))[name]
+        """Piston, air, or one of the shipped actuators."""
+        return effects_in(importlib.import_module(_FRAME[name]))[name]
+
+
+def is_part(effect: type[Effect]) -> bool:
+    """Whether an effect belongs to the frame of a machine, not to its effects list."""
+    return effect.name in FRAME or issubclass(effect, Actuator)

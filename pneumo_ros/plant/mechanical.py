@@ -1,15 +1,28 @@
-"""A machine without its valve and chambers: what is left to judge where only pressures or a force were measured."""
+"""Parts of a machine: its mechanics, driven by pressures or a force, and its chambers, driven by the position."""
 
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant.model import Model
 
+_MECHANICS = frozenset(
+    {
+        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_scale", "static_rise", "slip",
+        "stribeck", "resistance",
+    }
+)  # fmt: skip
+IMPOSED, ROD = "imposed_motion", "rod_atmospheric_force"
 
-def mechanical(model: Model) -> Model | None:
-    """The model without valve and chambers, driven by a force; None where its mechanics need the valve or the gas."""
+
+def mechanical(model: Model, by_force: bool = False) -> Model | None:
+    """The model without valve and chambers, driven by a force; None where its mechanics need the valve or the gas.
+
+    `by_force`: a force that was measured, which has the atmosphere's on the rod in it already.
+    """
     if model.force_driven:
         return model
     kept: list[str] = []
     for name in model.effects:
+        if by_force and name == ROD:
+            continue
         try:
             Model.build(
                 [*kept, name], {}, library=model.library, frame=("piston", "air"), name=model.name, defaults=True
@@ -29,20 +42,28 @@ def mechanical(model: Model) -> Model | None:
 
 def moves(model: Model, name: str) -> bool:
     """Whether an effect acts on the piston or on its position sensor."""
-    mechanics = {
-        "force", "friction", "added_mass", "friction_scale", "friction_rise", "static_scale", "static_rise", "slip",
-        "stribeck", "y_measured", "resistance",
-    }  # fmt: skip
-    functions = model.library.find(name).functions.values()
-    return any(signal in mechanics for function in functions for signal in function.writes)
+    return any(signal in _MECHANICS | {"y_measured"} for signal in _written(model, name))
+
+
+def _written(model: Model, name: str) -> set[str]:
+    return {signal for function in model.library.find(name).functions.values() for signal in function.writes}
+
+
+def pneumatic(model: Model) -> Model:
+    """The model without its mechanics: valve and chambers, driven by the measured motion."""
+    if model.force_driven or model.imposed:
+        return model
+    kept = [name for name in model.effects if not _written(model, name) & _MECHANICS]
+    return model.with_effects([*kept, IMPOSED])
 
 
 def whole(model: Model, mechanics: Model) -> Model:
-    """`model` with the effects and the values of its `mechanics`, which were fitted or enlarged alone.
+    """`model` with the effects and the values of its `mechanics`, or of its chambers, which were fitted alone.
 
     A model that is not such a part of `model` is returned as it is.
     """
-    if model.force_driven or not mechanics.force_driven:
+    chambers = mechanics.imposed and not model.imposed
+    if model.force_driven or not (mechanics.force_driven or chambers):
         return mechanics
-    further = [name for name in mechanics.effects if name not in model.effects]
+    further = [name for name in mechanics.effects if name not in (*model.effects, IMPOSED)]
     return model.with_effects([*model.effects, *further], mechanics.parameters)

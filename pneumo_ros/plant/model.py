@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.plant.actuator import SIDES, Actuator, Chamber
 from pneumo_ros.plant.compose import Composition, compose
 from pneumo_ros.plant.effect import Effect, Parameter
 from pneumo_ros.plant.held import held_inputs, input_rows
 from pneumo_ros.plant.kernels import load_kernel
 from pneumo_ros.plant.lacking import lacking, missing_parameters, without_chambers
 from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
-from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.library import USUAL_FRAME, Library, is_part
 from pneumo_ros.plant.uncertainty import SECTION, deviations, nested
 from pneumo_ros.plant.usual import usual_size
 
@@ -52,7 +53,7 @@ class Model:
         *,
         name: str = "model",
         library: Library | None = None,
-        frame: Iterable[str] = FRAME,
+        frame: Iterable[str] = USUAL_FRAME,
         defaults: bool = False,
         uncertainty: Mapping[str, object] | None = None,
         measured: Iterable[str] = (),
@@ -68,7 +69,7 @@ class Model:
         repeated = sorted({n for n in names if names.count(n) > 1})
         if repeated:
             raise UsageError(f"effect {repeated[0]} is listed twice")
-        parts = (*(library.frame(f) for f in frame), *(library.find(n) for n in names))
+        parts = (*(library.part(f) for f in frame), *(library.find(n) for n in names))
         if sentence := without_chambers(parts, library):
             raise UsageError(sentence)
         try:
@@ -84,12 +85,12 @@ class Model:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of the effects, in order, without the frame (piston, air, chambers)."""
-        return tuple(e.name for e in self.composition.effects if e.name not in FRAME)
+        """Names of the effects, in order, without the frame: piston, air and what actuates the machine."""
+        return tuple(e.name for e in self.composition.effects if not is_part(e))
 
     @property
     def states(self) -> tuple[str, ...]:
-        """Names of the states, in the order of state vectors: y, v, p_a, p_b, then those of the effects."""
+        """Names of the states, in the order of state vectors: y, v, the chambers' pressures, then the effects' own."""
         return self.composition.states
 
     @property
@@ -103,9 +104,40 @@ class Model:
         return self.composition.inputs
 
     @property
+    def actuator(self) -> type[Actuator] | None:
+        """The part that actuates the machine; None where a measured force [N] does, which then is the input."""
+        return self.composition.actuator
+
+    @property
+    def chambers(self) -> tuple[Chamber, ...]:
+        """The chambers of its actuator, in the order of their pressures among the states."""
+        return self.composition.chambers
+
+    @property
     def force_driven(self) -> bool:
-        """Whether the input is a measured force [N] instead of a valve voltage: a machine file without chambers."""
-        return "p_a" not in self.states
+        """Whether the input is a measured force [N] instead of a valve voltage: a machine file without actuator."""
+        return self.actuator is None
+
+    def require_two_chambers(self, who: str) -> None:
+        """Raise UsageError, in which `who` needs them, unless the piston has air on both sides."""
+        if len(self.chambers) != len(SIDES):
+            what = f"its part '{self.actuator.name}' has one" if self.actuator else "a measured force drives it"
+            raise UsageError(
+                f"{who} needs chambers on both sides of the piston; of {self.name}, {what}. Give a machine file with a "
+                "section 'chambers'"
+            )
+
+    @property
+    def has_valve(self) -> bool:
+        """Whether a valve lets air in and out: without one, the chambers are sealed and need no command."""
+        flows = {f"valve_flow_{chamber.side}" for chamber in self.chambers}
+        functions = (f for effect in self.composition.effects for f in effect.functions.values())
+        return any(flows.intersection(function.writes) for function in functions)
+
+    @property
+    def frame(self) -> int:
+        """How many states come first and are measured: position, velocity, and the pressure of each chamber."""
+        return 2 + len(self.chambers)
 
     def __getitem__(self, dotted: str) -> float:
         if dotted not in self.parameters:
@@ -144,9 +176,17 @@ class Model:
         checked = _checked(self.composition, {**self.parameters, **values}, defaults=False)
         return Model(self.composition, checked, name or self.name, self.library, self.uncertainty)
 
+    def with_uncertainty(self, known: Mapping[str, float]) -> "Model":
+        """The same machine, with `known` as the standard deviations of its parameters, by dotted name, in their units.
+
+        Raises UsageError, with the nearest names, for unknown parameters, and for what is no deviation above 0.
+        """
+        stated = deviations(self.composition, self.parameters, known)
+        return Model(self.composition, self.parameters, self.name, self.library, stated)
+
     def with_effects(self, effects: Iterable[str], values: Mapping[str, object] | None = None) -> "Model":
         """Another list of effects; shared parameters keep their values, new ones take `values` or their defaults."""
-        frame = tuple(e.name for e in self.composition.effects if e.name in FRAME)
+        frame = tuple(e.name for e in self.composition.effects if is_part(e))
         measured = self.composition.measured
         model = Model.build(
             effects, {}, name=self.name, library=self.library, frame=frame, defaults=True, measured=measured
@@ -209,18 +249,17 @@ class Model:
         rest: dict[str, float | str] = {
             s: effect.states[s].initial for effect in self.composition.effects for s in effect.states
         }
-        if not self.force_driven:
-            rest["p_a"] = rest["p_b"] = self["air.atmospheric_pressure"]
+        rest |= {chamber.state: self["air.atmospheric_pressure"] for chamber in self.chambers}
         begin = {s: given.get(s, rest[s]) for s in rest}
         return np.array([float(begin[b] if isinstance(b, str) else b) for b in begin.values()])
 
     def _check_volumes(self) -> None:
-        for side in "ab" if not self.force_driven else "":
-            swept = 0.5 * self["piston.stroke"] * self[f"piston.area_{side}"]
-            if self[f"chambers.volume_{side}"] <= swept:
+        for chamber in self.chambers:
+            swept = 0.5 * self["piston.stroke"] * self[chamber.area]
+            if self[chamber.volume] <= swept:
                 raise UsageError(
-                    f"chamber {side} has no volume left at its end: chambers.volume_{side} (at mid stroke) is "
-                    f"{self[f'chambers.volume_{side}']:g} m3, the piston sweeps {swept:g} m3 of it; increase it"
+                    f"chamber {chamber.side} has no volume left at its end: {chamber.volume} (at mid stroke) is "
+                    f"{self[chamber.volume]:g} m3, the piston sweeps {swept:g} m3 of it; increase it"
                 )
 
     def simulate(
@@ -306,7 +345,7 @@ class Model:
     ) -> tuple[Array, Array]:
         """Drive the effects' own states along a measured motion; returns states, derivatives, both (samples, states).
 
-        measured (samples, m): the frame's states at every sample, y, v, p_a, p_b (y, v when force-driven);
+        measured (samples, m): the frame's states at every sample: y, v and the pressure of each chamber;
         voltage: `parts` of them are held one after another between two samples; rest: values of the other states at
         sample 0, which is at time `start` [s]. The derivatives are those of the equations, averaged over the interval
         that ends at each sample: where they differ from the measurement, the equation fails. Row 0 of the derivatives
@@ -349,8 +388,8 @@ class Model:
         samples, len(states)) and derivatives (lanes, samples, len(columns)) of the states named, in that order; None
         means all of them. Raises UsageError for shapes that do not fit and unknown names.
         """
-        frame = 2 if self.force_driven else 4
-        given, tail, q = fitting(measured, rest, parameters, frame, len(self.states) - frame, len(self.parameters))
+        others = len(self.states) - self.frame
+        given, tail, q = fitting(measured, rest, parameters, self.frame, others, len(self.parameters))
         held = held_inputs(voltage, self.inputs)
         if _whole(len(held), parts) < given.shape[1] - 1:
             raise UsageError(f"{len(held)} voltages do not cover {given.shape[1]} samples")
@@ -370,7 +409,8 @@ class Model:
     ) -> dict[str, Array]:
         """Signals along a trajectory (samples, states): every state, `effort` [N] and the observed signals.
 
-        `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract; the others as in `signals`.
+        `effort` = A_a p_a - A_b p_b - p_atm (A_a - A_b), the signal of the contract, with the atmosphere's pressure on
+        a side that is no chamber; the others as in `signals`.
         voltage (samples,) or one for all, None for 0. Raises UsageError for too few.
         """
         X = np.array(states, dtype=float, ndmin=2)
@@ -384,10 +424,10 @@ class Model:
 
     def effort(self, states: Array) -> Array:
         """Net pressure force A_a p_a - A_b p_b - p_atm (A_a - A_b) [N] for states (..., states)."""
-        area_a, area_b = self["piston.area_a"], self["piston.area_b"]
-        a, b = self.states.index("p_a"), self.states.index("p_b")
-        atmosphere = self["air.atmospheric_pressure"] * (area_a - area_b)
-        return np.asarray(area_a * states[..., a] - area_b * states[..., b] - atmosphere)
+        areas, atmosphere = (self["piston.area_a"], self["piston.area_b"]), self["air.atmospheric_pressure"]
+        columns = {chamber.side: self.states.index(chamber.state) for chamber in self.chambers}
+        a, b = (states[..., columns[side]] if side in columns else atmosphere for side in SIDES)
+        return np.asarray(areas[0] * a - areas[1] * b - atmosphere * (areas[0] - areas[1]))
 
     def derivatives(self, states: ArrayLike, voltage: ArrayLike | None, time: ArrayLike = 0.0) -> Array:
         """Right-hand sides (samples, states) of the model's equations at the given states (samples, states).

@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
+from pneumo_ros.plant.actuator import Actuator
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.signals import DRIVE, SIGNALS, Signal
 
@@ -24,12 +25,19 @@ def _is_measured(name: str) -> bool:
     return name in SIGNALS and SIGNALS[name].kind == "measured"
 
 
+def owners_read(effect: type[Effect]) -> tuple[str, ...]:
+    """Names of the other effects whose parameters an effect reads, as owner__key, sorted."""
+    reads = {name for function in effect.functions.values() for name in function.reads}
+    return tuple(sorted({name.partition("__")[0] for name in reads if "__" in name}))
+
+
 def inputs_of(effects: Sequence[type[Effect]], measured: Collection[str] = ()) -> tuple[str, ...]:
     """The held inputs of a machine in kernel order: its drive, then the measured signals that its effects read.
 
     `measured`: those that are to take the place of a constant, where one is read.
     """
     states = {state for effect in effects for state in effect.states}
+    states |= {name for effect in effects if issubclass(effect, Actuator) for name in effect.open_side}
     read = {name for effect in effects for reads, _ in _functions(effect) for name in reads}
     todo = list(read)
     while todo:  # each signal once

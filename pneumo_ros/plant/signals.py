@@ -11,6 +11,8 @@ default, and any number of effects may read and rewrite it, in the order of the 
 from dataclasses import dataclass
 from typing import Literal
 
+from pneumo_ros.measured import MEASURED
+
 Kind = Literal["input", "measured", "sum", "product", "single"]
 
 
@@ -34,6 +36,7 @@ class Signal:
 _TABLE = (
     # inputs
     Signal("U", "input", "V", "0.0", "valve voltage, held over a sample"),
+    Signal("U_b", "measured", "V", "0.0", "voltage of the valve of chamber b, where each chamber has one"),
     Signal("t", "input", "s", "0.0", "time since the start"),
     Signal(
         "p_a", "measured", "Pa", "0.0", "measured pressure in chamber a, absolute; a state where there are chambers"
@@ -41,14 +44,26 @@ _TABLE = (
     Signal(
         "p_b", "measured", "Pa", "0.0", "measured pressure in chamber b, absolute; a state where there are chambers"
     ),
-    Signal("measured_supply", "measured", "Pa", "0.0", "measured supply pressure, absolute"),
     Signal("imposed_velocity", "measured", "m/s", "0.0", "velocity at which a test machine moves the piston"),
-    Signal("load_force", "measured", "N", "0.0", "measured rod force, positive where positive positions are"),
+    *(Signal(one.input, "measured", one.unit, "0.0", one.meaning) for one in MEASURED),
     # valve
     Signal("voltage_offset", "sum", "V", "0.0", "added to the valve voltage before anything else"),
     Signal("voltage", "single", "V", "U + voltage_offset", "voltage at the valve coil"),
     Signal("spool", "single", "V", "voltage", "spool position, in volts of command"),
     Signal("opening", "single", "V", "spool", "spool position beyond the dead zone"),
+    Signal("asked_a", "single", "V", "opening", "opening that the command asks of port a; above 0 it fills chamber a"),
+    Signal("asked_b", "single", "V", "-opening", "opening that the command asks of port b; above 0 it fills chamber b"),
+    Signal("opening_a", "single", "V", "asked_a", "opening at port a: above 0 it fills chamber a, below it empties it"),
+    Signal("opening_b", "single", "V", "asked_b", "opening at port b: above 0 it fills chamber b, below it empties it"),
+    Signal("share_pa", "product", "1", "1.0", "multiplies the flow of path P-A, supply to chamber a"),
+    Signal("share_at", "product", "1", "1.0", "multiplies the flow of path A-T, chamber a to exhaust"),
+    Signal("share_pb", "product", "1", "1.0", "multiplies the flow of path P-B, supply to chamber b"),
+    Signal("share_bt", "product", "1", "1.0", "multiplies the flow of path B-T, chamber b to exhaust"),
+    Signal("ratio_pa", "single", "1", "critical_ratio", "critical pressure ratio of path P-A"),
+    Signal("ratio_at", "single", "1", "critical_ratio", "critical pressure ratio of path A-T"),
+    Signal("ratio_pb", "single", "1", "critical_ratio", "critical pressure ratio of path P-B"),
+    Signal("ratio_bt", "single", "1", "critical_ratio", "critical pressure ratio of path B-T"),
+    Signal("subsonic_power", "single", "1", "0.5", "subsonic index m of all paths"),
     Signal("supply_drop", "sum", "Pa", "0.0", "pressure lost between supply and valve"),
     Signal(
         "p_s",

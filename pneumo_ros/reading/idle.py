@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.errors import DataError
+from pneumo_ros.equations.breakaway import holding_force
 from pneumo_ros.plant import Model
+from pneumo_ros.reading.steady import check_steady, travel
 from pneumo_ros.runs.noise import noise_level, resolution
 from pneumo_ros.runs.run import Run
 
@@ -27,15 +28,16 @@ _HANGS, _SLOWEST = (
     5e-3,
 )  # s of one value without noise; s between samples: slower ones do not show noise
 _TRAVEL = 0.05  # m both ways
-_FLAT = 1.5  # noise deviations: most that a disconnected pressure sensor shows
 _UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}
 _TOPICS = {"position_m": "the position", "pressure_a_pa": "chamber_a/pressure", "pressure_b_pa": "chamber_b/pressure"}
 
 
 def idle_notes(model: Model, run: Run) -> list[str]:
-    """Sentences on idle parts of `run`. Raises DataError for a dead pressure sensor."""
-    _check_alive(run)
-    hung = {name: found for name, signal in run.signals.items() if (found := _hung(run, signal))}
+    """Sentences on idle parts of `run`. Raises DataError for a pressure that does not change (see `check_steady`)."""
+    if not run.force_driven or run.by_pressures:
+        check_steady(model, run)
+    known = {name: signal for name, signal in run.signals.items() if name not in run.assumed}
+    hung = {name: found for name, signal in known.items() if (found := _hung(run, signal))}
     notes = [
         f"{_TOPICS[name]} repeats {run.signals[name][start]:.6g} {_UNITS[name]} without any noise "
         f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
@@ -43,25 +45,8 @@ def idle_notes(model: Model, run: Run) -> list[str]:
     ]
     if model.imposed:
         return notes
-    return [*notes, *_rests(model, run, *hung.get("position_m", (0, 0))), *_commands(run)]
-
-
-def _check_alive(run: Run) -> None:
-    """Raises DataError for a pressure that does not change, or shows noise alone, while the piston travels.
-
-    Where another force than the pressures' moves the piston, they may be constant.
-    """
-    noise, (out, back) = run.noise, _travel(run, 0)
-    for name, signal in run.signals.items():
-        fixed = np.ptp(signal) == 0.0 and max(out, back) > _TRAVEL
-        # A steady motion one way does not change the pressures; the motion back does.
-        flat = np.std(signal) < _FLAT * noise[name] and min(out, back) > _TRAVEL
-        if name != "position_m" and (fixed or flat) and not run.force_driven:
-            raise DataError(
-                f"{run.name}: {_TOPICS[name]} stays at {signal.mean():.6g} Pa, within {np.ptp(signal):.3g} Pa of "
-                f"noise, while the piston travels {out:.3g} m out and {back:.3g} m back: its sensor is dead or not "
-                "connected; look at its plug and hose, and record again"
-            )
+    commands = _commands(run) if model.has_valve else ()
+    return [*notes, *_rests(model, run, *hung.get("position_m", (0, 0))), *commands]
 
 
 def _hung(run: Run, signal: Array) -> tuple[int, int] | None:
@@ -124,52 +109,42 @@ def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
     if pushing > 0.5 * LONG:
         return f"{np.max(np.abs(force)):.3g} N push it, against {static:.3g} N of static friction"
     fewest = _FILLS if (stop - start) * run.sample_time < _LATER else _FEWER
-    if not model.force_driven and (fills := _fills(model, run, start, stop)) > fewest:
+    if model.has_valve and (fills := _fills(model, run, start, stop)) > fewest:
         return f"the valve passes {fills:.1f} times the air that fills a chamber"
     return ""
 
 
 def _force(model: Model, run: Run) -> Array:
-    """Driving force (n,) [N]."""
+    """Force that friction holds while the piston rests (n,) [N]."""
     if model.force_driven:
         return np.append(run.held, run.held[-1])
-    states = np.tile(model.state(), (len(run), 1))
-    states[:, 2], states[:, 3] = run.pressure_a, run.pressure_b
-    return model.effort(states)
+    return holding_force(model, run)
 
 
 def _fills(model: Model, run: Run, start: int, stop: int) -> float:
-    """How often the valve would fill the larger chamber, and empty the other, at half the supply's pressure in both."""
+    """How often the valve would fill the largest chamber, and empty another, at half the supply's pressure in all."""
     supply, atmosphere = model["air.supply_pressure"], model["air.atmospheric_pressure"]
     half, y = 0.5 * (supply + atmosphere), float(run.position[start])
-    states = np.tile(model.state(y=y, p_a=half, p_b=half), (stop - start, 1))
+    states = np.tile(model.state(y=y, **{one.state: half for one in model.chambers}), (stop - start, 1))
     seen = model.outputs(states, run.sampled(model.inputs)[start:stop], sample_time=run.sample_time)
-    passed = np.cumsum(seen["port_flow_a"] - seen["port_flow_b"]) * 0.5 * run.sample_time
-    a, b = (
-        model["chambers.volume_a"] + model["piston.area_a"] * y,
-        model["chambers.volume_b"] - model["piston.area_b"] * y,
-    )
+    flow = np.mean([one.way * seen[one.flow] for one in model.chambers], axis=0)
+    passed = np.cumsum(flow) * run.sample_time
+    largest = max(model[one.volume] + one.way * model[one.area] * y for one in model.chambers)
     gas = model["air.gas_constant"] * model["air.temperature"]
-    return float(np.ptp(passed)) * gas / ((supply - atmosphere) * max(a, b))
+    return float(np.ptp(passed)) * gas / ((supply - atmosphere) * largest)
 
 
 def _commands(run: Run) -> Iterator[str]:
     """A note if the piston moves both ways after the last change of the command."""
     changes = np.flatnonzero(np.diff(run.held)) + 1
     last = int(changes[-1]) if len(changes) else 0
-    out, back = _travel(run, last)
-    if min(out, back) > _TRAVEL and not run.force_driven:
+    out, back = travel(run, last)
+    if min(out, back) > _TRAVEL:
         when = f"after {run.time[last]:.3f} s" if last else "at all"
         yield (
             f"valve/command does not change {when}, held at {run.held[-1]:.4g} V, while the piston travels {out:.3g} m "
             f"out and {back:.3g} m back: it may not drive the valve; flows and pressures cannot be judged then"
         )
-
-
-def _travel(run: Run, since: int) -> tuple[float, float]:
-    """How far the piston travels out and back [m] from the sample `since` on."""
-    steps = np.diff(run.position[since :: max(round(2.0 * _BLOCK / run.sample_time), 1)])
-    return float(steps[steps > 0.0].sum()), float(-steps[steps < 0.0].sum())
 
 
 def _span(run: Run, start: int, stop: int) -> str:

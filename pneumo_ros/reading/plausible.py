@@ -10,10 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.equations.guess import resting_states
 from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import MEASURED
 from pneumo_ros.plant import Model
 from pneumo_ros.reading.idle import idle_notes
+from pneumo_ros.reading.motion import check_sealed, imposed_note
 from pneumo_ros.runs.run import Run
 
 _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
@@ -23,7 +26,7 @@ _MOVES = 0.01  # m of motion: with less, leaks look like exchanged or reversed s
 _VENTED = 0.5  # of the atmospheric pressure: chambers of a running axis are above it
 _BLOCK = 0.05  # s
 _MIDDLES = (5.0, 2.5, -2.5, -5.0)  # V
-_UNITS = {"momentum": ("N", 1.0), "chamber_a": ("g/s", 1e3), "chamber_b": ("g/s", 1e3)}
+_MOMENTUM, _FLOW = ("N", 1.0), ("g/s", 1e3)  # units of the residuals
 
 
 @dataclass(frozen=True)
@@ -42,11 +45,27 @@ def check_run(model: Model, run: Run) -> list[str]:
     Raises DataError when the run leaves the stroke of `model`, a sensor is dead, chambers are swapped, position
     or voltage are reversed, or pressures are gauge pressures.
     """
+    if run.by_pressures:
+        check_sealed(run)
     notes = idle_notes(model, run)
     found = _mistake(model, run)
     if found is not None:
         raise DataError(found)
-    return notes
+    return [*notes, *imposed_note(model, run)]
+
+
+def supply_is_gauge(model: Model, run: Run) -> bool:
+    """Whether the flows into the chambers agree much better with the atmosphere's pressure added to the supply's."""
+    measuring = model.measuring(("measured_supply",))
+    if model.force_driven or measuring.inputs == model.inputs:
+        return False
+    higher = {**run.further, "measured_supply": run.further["measured_supply"] + model["air.atmospheric_pressure"]}
+    both = [_chambers(measuring, one) for one in (run, replace(run, further=higher))]
+    return _gain(*both) > _GAIN
+
+
+def _chambers(model: Model, run: Run) -> dict[str, float]:
+    return {name: rms for name, rms in _residuals(model, run).items() if name != "momentum"}
 
 
 def _mistake(model: Model, run: Run) -> str | None:
@@ -75,11 +94,15 @@ def _mistake(model: Model, run: Run) -> str | None:
 
 def _mistakes(model: Model, run: Run) -> list[_Mistake]:
     """Possible mistakes in a recording of this kind of axis."""
-    reversed_position = _Mistake(
-        lambda run: replace(run, position=-run.position, further=_reversed(run.further)),
-        "the position seems to count the wrong way; it grows when the rod extends",
-        "reversed-position",
-        "change the sign where the position is published",
+    if model.force_driven:
+        return _of_force(model, run)
+    rise = model["air.atmospheric_pressure"]
+    swapped = _swapped(lambda run: replace(run, pressure_a=run.pressure_b, pressure_b=run.pressure_a))
+    gauge = _Mistake(
+        lambda run: _raised(run, rise),
+        "the pressures seem to be gauge pressures, not absolute ones",
+        "gauge",
+        f"add the atmosphere's {rise:.6g} Pa where they are published",
     )
     reversed_voltage = _Mistake(
         lambda run: replace(run, input=-run.input),
@@ -87,25 +110,47 @@ def _mistakes(model: Model, run: Run) -> list[_Mistake]:
         "reversed-voltage",
         "change the sign where the command is recorded",
     )
-    if model.force_driven:
-        return [reversed_position]
-    rise = model["air.atmospheric_pressure"]
+    commanded = bool(np.ptp(run.input) > 0.0)
     return [
-        _Mistake(
-            lambda run: replace(run, pressure_a=run.pressure_b, pressure_b=run.pressure_a),
-            "chamber_a/pressure and chamber_b/pressure seem to be exchanged; chamber a grows when the rod extends",
-            "swapped-chambers",
-            "exchange the two topics, or the sensors' plugs, where they are published",
-        ),
-        _Mistake(
-            lambda run: _raised(run, rise),
-            "the pressures seem to be gauge pressures, not absolute ones",
-            "gauge",
-            f"add the atmosphere's {rise:.6g} Pa where they are published",
-        ),
-        reversed_position,
-        *([] if model.imposed else [reversed_voltage, *_off_centre(run)]),
+        *([swapped] if len(run.sensed(model.chambers)) > 1 else []),
+        gauge,
+        _backwards("change the sign where the position is published"),
+        *([reversed_voltage, *_off_centre(run)] if commanded or not model.imposed else []),
     ]
+
+
+def _of_force(model: Model, run: Run) -> list[_Mistake]:
+    """Possible mistakes where a force, measured or that of the pressures, drives the piston."""
+    if not run.by_pressures:
+        kilo = _Mistake(
+            lambda run: replace(run, input=1e3 * run.input),
+            "the force seems to be in kN, not in N",
+            "kN",
+            "multiply it by 1000 where it is published",
+        )
+        return [_backwards("--read-as reversed-force if it is the force that has the wrong sign"), kilo]
+    area_a, area_b = model["piston.area_a"], model["piston.area_b"]
+    swapped = _swapped(lambda run: replace(run, input=area_a * run.further["p_b"] - area_b * run.further["p_a"]))
+    both = {"p_a", "p_b"} <= set(run.further)
+    return [_backwards("change the sign where the position is published"), *([swapped] if both else [])]
+
+
+def _backwards(mend: str) -> _Mistake:
+    return _Mistake(
+        lambda run: replace(run, position=-run.position, further=_reversed(run.further)),
+        "the position seems to count the wrong way; it grows when the rod extends",
+        "reversed-position",
+        mend,
+    )
+
+
+def _swapped(undo: Callable[[Run], Run]) -> _Mistake:
+    return _Mistake(
+        undo,
+        "chamber_a/pressure and chamber_b/pressure seem to be exchanged; chamber a grows when the rod extends",
+        "swapped-chambers",
+        "exchange the two topics, or the sensors' plugs, where they are published",
+    )
 
 
 def _off_centre(run: Run) -> list[_Mistake]:
@@ -149,12 +194,10 @@ def _size(model: Model, run: Run, equation: str) -> float:
     if model.force_driven:
         return float(np.sqrt(np.mean(run.held**2)))
     if equation == "momentum":
-        states = np.tile(model.state(), (len(run), 1))
-        states[:, 2], states[:, 3] = run.pressure_a, run.pressure_b
-        return float(np.sqrt(np.mean(model.effort(states) ** 2)))
-    slope = model["piston.area_a"] if equation == "chamber_a" else -model["piston.area_b"]
-    pressure = run.signals[f"pressure_{equation[-1]}_pa"]
-    content = pressure * (model[f"chambers.volume_{equation[-1]}"] + slope * run.position)
+        return float(np.sqrt(np.mean(model.effort(resting_states(model, run)) ** 2)))
+    chamber = next(one for one in model.chambers if one.equation == equation)
+    volume = model[chamber.volume] + chamber.way * model[chamber.area] * run.position
+    content = run.signals[chamber.signal] * volume
     content /= model["air.gas_constant"] * model["air.temperature"]
     width = min(max(round(_BLOCK / run.sample_time), 1), len(run) // 2)
     means = content[: len(content) // width * width].reshape(-1, width).mean(axis=1)
@@ -163,7 +206,7 @@ def _size(model: Model, run: Run, equation: str) -> float:
 
 def _lowest(run: Run) -> float:
     """The lowest pressure of both chambers [Pa], without the lowest 1 % of the samples."""
-    both = [np.percentile(p, 1) for p in (run.pressure_a, run.pressure_b) if p is not None]
+    both = [np.percentile(p, 1) for p in (run.pressure_of("a"), run.pressure_of("b")) if p is not None]
     return float(min(both, default=np.inf))
 
 
@@ -174,11 +217,14 @@ def _raised(run: Run, rise: float) -> Run:
 
 def _reversed(further: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
     """Further inputs where the position counts the other way."""
-    return {name: -held if name in ("imposed_velocity", "load_force") else held for name, held in further.items()}
+    flips = {"imposed_velocity", *(one.input for one in MEASURED if one.flips)}
+    return {name: -held if name in flips else held for name, held in further.items()}
 
 
 def _sizes(residuals: dict[str, float]) -> str:
     """Residuals in words."""
     return ", ".join(
-        f"{_UNITS[name][1] * rms:.2g} {_UNITS[name][0]} ({name.replace('_', ' ')})" for name, rms in residuals.items()
+        f"{factor * rms:.2g} {unit} ({name.replace('_', ' ')})"
+        for name, rms in residuals.items()
+        for unit, factor in [_MOMENTUM if name == "momentum" else _FLOW]
     )

@@ -2,20 +2,31 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.mechanical import mechanical
-from pneumo_ros.reading.plausible import check_run
+from pneumo_ros.plant.actuator import SIDES
+from pneumo_ros.plant.mechanical import mechanical, pneumatic
+from pneumo_ros.reading.lengths import check_length
+from pneumo_ros.reading.motion import velocity_note
+from pneumo_ros.reading.plausible import check_run, supply_is_gauge
+from pneumo_ros.reading.steady import constant, verdict
 from pneumo_ros.records import Recording, read_recording
 from pneumo_ros.records.corrections import corrected
+from pneumo_ros.records.rates import thinned
 from pneumo_ros.records.unfit import check_pressures, check_supply
 from pneumo_ros.runs.cuts import Cut, without
 from pneumo_ros.runs.inputs import check_inputs
-from pneumo_ros.runs.run import Run, make_run
+from pneumo_ros.runs.run import ATMOSPHERE, Run, run_for
 
-ATMOSPHERE = 101325.0  # Pa, for machine files without it
+ZERO = 5e3  # Pa: a vented chamber reads less on a gauge
+PRESSURES = tuple(f"p_{side}" for side in SIDES)  # measured, where a machine has no chambers
+
+__all__ = ["ATMOSPHERE", "ReadOptions", "Reading", "Readings", "read_run", "read_runs"]
 
 
 @dataclass(frozen=True)
@@ -25,7 +36,9 @@ class ReadOptions:
     namespace: str | None = None
     joint: str | None = None
     words: tuple[str, ...] = ()  # of `records.corrections.WORDS`
-    mechanics: bool = False  # whether pressures without a valve command suffice, to judge the mechanics alone
+    mechanics: bool = False  # whether the mechanics alone, or one chamber alone, may be judged
+    imposed: bool = False  # whether a test machine imposed the motion, though no map says so
+    topics: tuple[tuple[str, str], ...] = ()  # name in the contract, topic and field of another program
 
 
 @dataclass(frozen=True)
@@ -55,7 +68,9 @@ def corrected_recording(path: str | Path, options: ReadOptions, atmosphere: floa
 
     `atmosphere` [Pa] is added to gauge pressures. Raises DataError when it cannot be read.
     """
-    return corrected(read_recording(path, options.namespace, options.joint), options.words, atmosphere)
+    topics = dict(options.topics)
+    recording = read_recording(path, options.namespace, options.joint, options.imposed, topics)
+    return corrected(recording, options.words, atmosphere)
 
 
 def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) -> tuple[Run, list[str]]:
@@ -63,20 +78,47 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
 
     Raises DataError when it lacks a signal that `model` needs, or is not plausible (see `check_run`).
     """
-    areas = (model["piston.area_a"], model["piston.area_b"])
-    whole = make_run(recording, model.force_driven, model.imposed, areas)
+    recording, said = thinned(recording)
+    try:
+        whole = run_for(recording, model)
+    except DataError as problem:
+        raise (_vented_on_gauge(recording, model) or problem) from problem
+    check_length(model, whole)
     run, notes = _trusted(recording, model, without(whole, cuts))
     check_inputs(model, run)
-    return run, [f"{note}." for note in (*notes, *check_run(model, run))]
+    return run, [f"{note}." for note in (*said, *notes, *check_run(model, run), *velocity_note(recording, run))]
+
+
+def _vented_on_gauge(recording: Recording, model: Model) -> DataError | None:
+    """The error for a chamber whose pressure scatters about zero, where it is the atmosphere's on a gauge."""
+    atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
+    mended = corrected(recording, ("gauge",), atmosphere)
+    for chamber, pressure in (("a", recording.pressure_a), ("b", recording.pressure_b)):
+        if pressure is None or abs(float(np.median(pressure))) > ZERO or np.ptp(pressure) == 0.0:
+            continue
+        try:
+            run = run_for(mended, model)
+            vented = constant(run, chamber) and verdict(model, run, chamber) == "vented"
+        except PneumoError:
+            continue
+        if vented:
+            other = "b" if chamber == "a" else "a"
+            return DataError(
+                f"{recording.name}: chamber {chamber} is vented, and the pressures are gauge pressures: "
+                f"chamber_{chamber}/pressure scatters about {pressure.mean():.3g} Pa, and the forces on the piston "
+                "agree. Type --read-as gauge,no-command to judge friction and load, or --read-as "
+                f"gauge,no-pressure-{chamber} to judge chamber {other} and its valve"
+            )
+    return None
 
 
 def _trusted(recording: Recording, model: Model, run: Run) -> tuple[Run, list[str]]:
     """The run without measured inputs that are not plausible, and a note on each; DataError if `model` reads them."""
-    chambers, notes = ("p_a", "p_b") if model.force_driven else (), list[str]()
+    chambers, notes = PRESSURES if model.force_driven else (), list[str]()
     needed = {*model.inputs, *(chambers if recording.pressures_drive else ())}
     for names, check, what in (
         (chambers, _check_oil, "its pressures are not used, and no effect of them is tried"),
-        (("measured_supply",), check_supply, "its supply pressure is not used"),
+        (("measured_supply",), partial(_check_supply, model, run), "its supply pressure is not used"),
     ):
         try:
             if set(names) & set(run.further):
@@ -87,6 +129,15 @@ def _trusted(recording: Recording, model: Model, run: Run) -> tuple[Run, list[st
             run = replace(run, further={name: held for name, held in run.further.items() if name not in names})
             notes.append(f"{what}: {problem}")
     return run, notes
+
+
+def _check_supply(model: Model, run: Run, recording: Recording) -> None:
+    check_supply(recording)
+    if supply_is_gauge(model, run):
+        raise DataError(
+            f"{recording.name}: supply/pressure is gauge pressure, it seems: with the atmosphere's added, the flows "
+            "into the chambers agree; type --read-as gauge-supply, or add it where it is published"
+        )
 
 
 def _check_oil(recording: Recording) -> None:
@@ -107,10 +158,26 @@ def read_run(path: str | Path, model: Model, options: ReadOptions | None = None,
 def run_of(
     recording: Recording, model: Model, cuts: Sequence[Cut] = (), *, mechanics: bool = False
 ) -> tuple[Run, list[str]]:
-    """As `checked_run`; with `mechanics`, those of `model` alone where the recording has no valve command."""
-    commanded = recording.voltage is not None or not recording.pressures_drive
-    alone = mechanics and not (commanded or model.force_driven or model.imposed)
-    return checked_run(recording, (mechanical(model) or model) if alone else model, cuts)
+    """As `checked_run`; with `mechanics`, by the part of `model` that the recording can judge (see `judged_part`)."""
+    return checked_run(recording, judged_part(recording, model) if mechanics else model, cuts)
+
+
+def judged_part(recording: Recording, model: Model) -> Model:
+    """What of `model` a recording judges: its mechanics without a valve command, one chamber with one pressure, or all.
+
+    One chamber is driven by the measured position, whether a valve or the motion alone fills it. A machine of one
+    chamber, or without a valve, is judged as a whole.
+    """
+    if len(model.chambers) < len(SIDES):
+        return model
+    measured = [pressure for pressure in (recording.pressure_a, recording.pressure_b) if pressure is not None]
+    if len(measured) == 1 and (recording.voltage is not None or model.imposed):
+        return pneumatic(model)
+    forced = recording.effort is not None or (recording.imposed and recording.load_cell is not None and not measured)
+    whole = model.imposed or (not model.has_valve and len(measured) == len(model.chambers))
+    if recording.voltage is None and not whole and (forced or recording.pressures_drive):
+        return mechanical(model, by_force=forced) or model
+    return model
 
 
 def read_runs(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinitionFormat, QosDurability
 from rosbags.rosbag2 import Reader
+from rosbags.rosbag2.reader import DirectoryReader
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records.block import Block, Channel
@@ -32,6 +33,7 @@ class ForeignBag:
         """Messages in the order of their recorded time. Raises DataError when rosbags cannot read the storage."""
         try:
             with Reader(self.path) as reader:
+                _agree(reader)
                 self.channels.update({one.id: _describe(one) for one in reader.connections})
                 messages = reader.messages()
                 while batch := list(islice(messages, BATCH)):
@@ -52,6 +54,21 @@ class ForeignBag:
             np.cumsum(length) - length,
             length,
         )
+
+
+def _agree(reader: Reader) -> None:
+    """Give the topics of every file what the folder's metadata say of them.
+
+    rosbags passes over topics whose quality of service, or hash of the type, is another one in the file. They differ
+    after a conversion or an edit, and where a recorder writes the two in other words.
+    """
+    if not isinstance(folder := reader.storage, DirectoryReader):
+        return
+    listed = {(one.topic, one.msgtype): one for one in folder.connections}
+    for storage in folder.storages:
+        for index, one in enumerate(storage.connections):
+            if known := listed.get((one.topic, one.msgtype)):
+                storage.connections[index] = one._replace(ext=known.ext, digest=known.digest)
 
 
 def _describe(connection: Connection) -> Channel:

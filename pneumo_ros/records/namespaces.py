@@ -8,8 +8,9 @@ from pneumo_ros.records import contract
 
 NEEDED = (
     f"{contract.JOINT_STATES}, {contract.PRESSURE_A}, {contract.PRESSURE_B} and {contract.COMMAND}, "
-    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force, with both pressures to judge "
-    f"friction and load alone, or with pressures or {contract.LOAD_CELL} for an imposed motion"
+    f"one of both pressures to judge that chamber alone, "
+    f"or {contract.JOINT_STATES} with effort alone for an axis driven by a force, with pressures to judge "
+    f"friction and load alone, or with pressures or {contract.LOAD_CELL} for an imposed motion (--imposed)"
 )
 
 
@@ -24,9 +25,11 @@ def choose_namespace(path: Path, types: dict[str, str], wanted: str | None) -> s
             f"{path} holds no axis: {contract.JOINT_STATES} is missing. There is: {_listed(types)}. Needed: {NEEDED}."
         )
     if wanted is not None:
-        if wanted.strip("/") not in axes:
+        plain = wanted.strip("/")
+        below = [name for name in axes if name.endswith(f"/{plain}")]  # shoulder means /robot/shoulder
+        if plain not in axes and len(below) != 1:
             raise DataError(f"{path}: {unknown_name('namespace', wanted, [_shown(name) for name in axes])}")
-        return wanted.strip("/")
+        return plain if plain in axes else below[0]
     # A robot's own joint states may lie beside those of the axis: the pressures show which namespace is the axis.
     likely = [name for name, parts in axes.items() if {contract.PRESSURE_A, contract.PRESSURE_B} <= parts] or list(axes)
     if len(likely) > 1:

@@ -1,5 +1,6 @@
 """A recording on disk as one `Recording`: its signals brought to one time base."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -7,22 +8,31 @@ import numpy as np
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import checks, contract
 from pneumo_ros.records.namespaces import NEEDED
-from pneumo_ros.records.recording import Array, Recording, imposed
+from pneumo_ros.records.recording import Array, Recording, imposed, with_imposed
 from pneumo_ros.records.series import COMMAND_LEAD, Series, held, resampled, seconds
 from pneumo_ros.records.signals import FEWEST, Signals
 from pneumo_ros.records.source import recording_name
 
 
-def read_recording(path: str | Path, namespace: str | None = None, joint_name: str | None = None) -> Recording:
+def read_recording(
+    path: str | Path,
+    namespace: str | None = None,
+    joint_name: str | None = None,
+    motion_imposed: bool = False,
+    topics: Mapping[str, str] | None = None,
+) -> Recording:
     """The recording at `path`: a rosbag2 folder, one whose recorder was killed, or a bare `.mcap` or `.db3` file.
 
-    `namespace` and `joint_name` choose among several axes in one recording. Raises DataError when the recording cannot
-    be read, lacks a required signal, or needs one of them.
+    `namespace` and `joint_name` choose among several axes in one recording; `motion_imposed`: a test machine imposed
+    the motion, though no map in the recording says so. `topics`: those of another program, by names in the contract, as
+    /plc/values:data[3] where a field of another type is meant. Raises DataError when the recording cannot be read,
+    lacks a required signal, or needs one of them.
     """
-    signals = Signals(Path(path), namespace, joint_name)
+    signals = Signals(Path(path), namespace, joint_name, topics)
     commands = signals.commands()
     pressure_a, pressure_b = signals.pressure(contract.PRESSURE_A), signals.pressure(contract.PRESSURE_B)
     description, load_cell = signals.description(), signals.load_cell()
+    description = with_imposed(description) if motion_imposed else description
     pressures = [series for series in (pressure_a, pressure_b) if series]
     if not (imposed(description) and commands is None and (pressures or load_cell)):
         _require(signals, commands, pressure_a, pressure_b)
@@ -32,6 +42,7 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
     joints = checks.outside_gaps(joints, pressures)
     time = seconds(joints.stamp, int(joints.stamp[0]))
     command_time, command, voltage = _zero_order_hold(commands, time, int(joints.stamp[0]))
+    command_b_time, command_b, _ = _zero_order_hold(signals.commands(contract.COMMAND_B), time, int(joints.stamp[0]))
     return Recording(
         name=recording_name(signals.path),
         path=signals.path,
@@ -51,17 +62,21 @@ def read_recording(path: str | Path, namespace: str | None = None, joint_name: s
         description=description,
         warnings=tuple(signals.warnings),
         load_cell=_sampled(load_cell, joints, "effort"),
+        further={name: resampled(one, "data", joints.stamp) for name, one in signals.further().items()},
+        command_b_time=command_b_time,
+        command_b=command_b,
     )
 
 
 def _require(signals: Signals, commands: Series | None, *pressures: Series | None) -> None:
-    """Raises DataError unless this is a valve-driven axis with pressures, or one driven by a force or by pressures."""
-    measured = None not in pressures and not signals.like(contract.COMMAND)  # else its command has another name
-    if commands is None and not measured and not np.isfinite(signals.joints.values["effort"]).all():
+    """Raises DataError where neither a pressure nor a force was measured, or one may have another name."""
+    driven = bool(np.isfinite(signals.joints.values["effort"]).all())
+    names = (contract.PRESSURE_A, contract.PRESSURE_B)
+    absent = [name for name, series in zip(names, pressures, strict=True) if series is None]
+    renamed = bool(signals.like(contract.COMMAND if commands is None else contract.PRESSURE_A))
+    if commands is None and not driven and (len(absent) == 2 or renamed):
         absent, lacking = [contract.COMMAND], f"{contract.COMMAND} or the effort in {contract.JOINT_STATES}"
-    elif commands is not None and None in pressures:
-        names = (contract.PRESSURE_A, contract.PRESSURE_B)
-        absent = [name for name, series in zip(names, pressures, strict=True) if series is None]
+    elif commands is not None and (len(absent) == 2 or (absent and renamed)):
         lacking = " and ".join(absent)
     else:
         return

@@ -1,6 +1,7 @@
 """One run of an axis as arrays on one time base."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,9 +21,9 @@ class Recording:
     """Signals of one axis, all of shape (n,) on `time` unless said otherwise, SI units, absolute pressures."""
 
     name: str  # of the folder or file
-    path: Path
-    namespace: str
-    joint_name: str
+    path: Path  # of the folder or file, as it was given
+    namespace: str  # of its topics; empty where they have none
+    joint_name: str  # in joint_states
     start_ns: int  # header stamp of the first sample
     time: Array  # [s] since the first sample, strictly increasing, by the header stamps of joint_states
     position: Array  # [m]
@@ -37,6 +38,9 @@ class Recording:
     description: dict[str, Any] | None  # the last one in the recording
     warnings: tuple[str, ...]  # sentences about what is wrong with the recording and what was done about it
     load_cell: Array | None = None  # [N], measured rod force, where the recording has it
+    further: Mapping[str, Array] | None = None  # what else is measured, by the names of `measured`
+    command_b_time: Array | None = None  # (k,) [s] as command_time, of the valve of chamber b, where there is one
+    command_b: Array | None = None  # (k,) [V]
 
     def __len__(self) -> int:
         return len(self.time)
@@ -57,7 +61,15 @@ class Recording:
         names = (
             "position", "velocity", "effort", "pressure_a", "pressure_b", "supply_pressure", "voltage", "load_cell",
         )  # fmt: skip
-        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None} | dict(
+            self.further or {}
+        )
+
+    def with_signals(self, signals: Mapping[str, Array], **fields: Any) -> "Recording":
+        """The recording with other values of its signals, by their names in `signals`, and of other fields."""
+        others = {name: signals[name] for name in self.further or () if name in signals}
+        own: dict[str, Any] = {name: values for name, values in signals.items() if name not in others}
+        return replace(self, **own, further={**(self.further or {}), **others}, **fields)
 
     def to_dataframe(self) -> "pd.DataFrame":
         """The signals as columns of a pandas data frame, over time [s]; UsageError where pandas is not installed."""
@@ -77,14 +89,23 @@ class Recording:
 
     @property
     def pressures_drive(self) -> bool:
-        """Whether the two chamber pressures are all that tell its drive: no effort, no imposed motion."""
-        alone = self.effort is None and not self.imposed
-        return alone and self.pressure_a is not None and self.pressure_b is not None
+        """Whether chamber pressures are all that tell its drive: no effort, no imposed motion.
+
+        Both of them; or one, where no valve fills the other chamber.
+        """
+        measured = sum(pressure is not None for pressure in (self.pressure_a, self.pressure_b))
+        return self.effort is None and not self.imposed and measured > (self.voltage is not None)
 
     @property
     def imposed(self) -> bool:
         """Whether a test machine imposed the motion, as the map of an imported table says."""
         return imposed(self.description)
+
+
+def with_imposed(description: dict[str, Any] | None) -> dict[str, Any]:
+    """The description of a recording with a map that says `motion: imposed`."""
+    plan = (description or {}).get("map")
+    return {**(description or {}), "map": {**(plan if isinstance(plan, dict) else {}), "motion": "imposed"}}
 
 
 def imposed(description: dict[str, Any] | None) -> bool:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.records.block import Integers
+from pneumo_ros.records.rates import laid
 from pneumo_ros.records.recording import Array
 
 Mask = NDArray[np.bool_]
@@ -69,12 +70,14 @@ def increasing(series: Series, warn: Callable[[str], None]) -> Series:
 
 
 def resampled(series: Series, name: str, stamp: Integers) -> Array:
-    """Value `name` at the times `stamp` (n,) [ns]: unchanged where stamps agree, linear between, constant outside."""
+    """Value `name` at the times `stamp` (n,) [ns]: unchanged where stamps agree, linear between, constant outside.
+
+    What is too fast for slower `stamp` is filtered out first.
+    """
     if np.array_equal(series.stamp, stamp):
         return series.values[name]
     origin = int(stamp[0])
-    values: Array = np.interp(seconds(stamp, origin), seconds(series.stamp, origin), series.values[name])
-    return values
+    return laid(seconds(stamp, origin), seconds(series.stamp, origin), series.values[name])
 
 
 def held(time: Array, command_time: Array, command: Array) -> Array:

@@ -1,12 +1,14 @@
 """Checks for recordings that can be read but not used; they need no model."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records.corrections import PRESSURE_UNITS
 from pneumo_ros.records.recording import Array, Recording
 
-_FEWEST, _SLOWEST = 50, 0.025  # samples; s between them: valve and friction act within milliseconds
+_FEWEST, _SLOWEST = 50, 0.0505  # samples; s between them: valve and friction act within milliseconds
 _VACUUM, _MOST = 1e4, 1e7  # Pa: lowest and highest pressure in a chamber of a pneumatic axis
 _OIL = 1e8  # Pa: highest pressure where the fluid is not modelled: that of a hydraulic cylinder
 _USUAL = 5e4  # Pa: the pressures of a running axis reach it, gauge or absolute
@@ -16,13 +18,25 @@ _SEVERAL = 1e-3  # share of the samples below which impossible values are dropou
 _HIGHEST = (("MPa", 1.2), ("bar", 13.0), ("psi", 145.0), ("kPa", 1300.0), ("hPa", _VACUUM))
 
 
-def check_use(recording: Recording, force_driven: bool, imposed: bool = False) -> None:
+_BOTH = ("pressure_a", "pressure_b")
+
+
+def check_use(
+    recording: Recording,
+    force_driven: bool,
+    imposed: bool = False,
+    pressures: Sequence[str] = _BOTH,
+    commanded: bool = True,
+) -> None:
     """Raises DataError for a recording that is too short, sampled too slowly, or lacks the input of the axis.
 
-    A valve-driven axis, and chambers whose motion is `imposed`, need two chamber pressures, in the range of absolute
-    pressures in Pa.
+    A machine with chambers needs the pressure of each of them, or of one if the motion is `imposed`, in the range of
+    absolute pressures in Pa: `pressures`, by their names in recordings. With a valve it is `commanded`, and needs its
+    command unless the motion is `imposed`.
     """
     _check_time(recording)
+    some = recording.pressure_a is not None or recording.pressure_b is not None
+    unmeasured = [name for name in pressures if getattr(recording, name) is None]
     by_force = force_driven and recording.load_cell is not None
     if recording.imposed and not (imposed or by_force) and recording.effort is None and recording.voltage is None:
         raise DataError(
@@ -30,23 +44,25 @@ def check_use(recording: Recording, force_driven: bool, imposed: bool = False) -
             "chambers are sealed, name imposed_motion among the effects of the machine file, and no valve; to judge "
             "its friction by a load cell, give --model a machine file without the section 'chambers'"
         )
-    if imposed and (force_driven or recording.pressure_a is None or recording.pressure_b is None):
+    if imposed and (force_driven or len(unmeasured) == len(pressures)):
         raise DataError(
-            f"{recording.name}: with imposed_motion, the pressures of both chambers are judged; the machine file needs "
-            "the section 'chambers', and the recording chamber_a/pressure and chamber_b/pressure"
+            f"{recording.name}: with imposed_motion, the pressures of the chambers are judged; the machine file needs "
+            "the section 'chambers', and the recording chamber_a/pressure or chamber_b/pressure, better both"
         )
     if force_driven and recording.effort is None and not (recording.imposed and recording.load_cell is not None):
         raise DataError(
-            f"{recording.name} has no effort and not both chamber pressures; a model without chambers is driven by a "
-            "measured force or by the pressures on its piston"
+            f"{recording.name} has no effort and {'one' if some else 'no'} chamber pressure; a model without chambers "
+            "is driven by a measured force or by the pressures on its piston"
+            + ("; if a test machine imposed the motion, add --imposed" if recording.load_cell is not None else "")
         )
-    if not (force_driven or imposed) and (
-        recording.voltage is None or recording.pressure_a is None or recording.pressure_b is None
-    ):
+    if not (force_driven or imposed) and ((commanded and recording.voltage is None) or unmeasured):
+        lacks = ["valve command"] if commanded and recording.voltage is None else []
+        absent = " and ".join(f"no {name}" for name in (*lacks, *map(_topic, unmeasured)))
+        needed = " and ".join([*(["a valve command"] if commanded else []), *map(_topic, pressures)])
         raise DataError(
-            f"{recording.name} has no valve command or no chamber pressures; a model with chambers needs both. "
-            "To judge friction and load alone, by a measured force or by the pressures on the piston, give --model a "
-            "machine file without the section 'chambers'."
+            f"{recording.name} has {absent}; this machine file needs {needed} here. To judge friction and load alone, "
+            "by a measured force or by the pressures on the piston, give --model a machine file without the section "
+            "'chambers'."
         )
     if not force_driven:
         check_pressures(recording)
@@ -65,7 +81,8 @@ def check_supply(recording: Recording) -> None:
     supply = recording.supply_pressure
     if supply is None:
         return
-    _check_size(recording, "supply/pressure", supply, [supply])
+    others = [one for one in (recording.pressure_a, recording.pressure_b) if one is not None]
+    _check_size(recording, "supply/pressure", supply, [supply, *others])
     for topic, pressure in (("chamber_a", recording.pressure_a), ("chamber_b", recording.pressure_b)):
         if pressure is not None and np.quantile(pressure, 0.99) > _ABOVE_SUPPLY * supply.max():
             raise DataError(
@@ -74,13 +91,18 @@ def check_supply(recording: Recording) -> None:
             )
 
 
+def _topic(pressure: str) -> str:
+    """The topic of a chamber's pressure, by its name in recordings."""
+    return f"chamber_{pressure[-1]}/pressure"
+
+
 def _check_time(recording: Recording) -> None:
     if len(recording.time) < _FEWEST:
         raise DataError(f"{recording.name} holds {len(recording.time)} samples; at least {_FEWEST} are needed")
     if recording.sample_time > _SLOWEST:
         raise DataError(
             f"{recording.name} is sampled every {1e3 * recording.sample_time:.3g} ms; valve and friction act within "
-            f"milliseconds: record at {1.0 / _SLOWEST:g} Hz or more, better 1 kHz"
+            f"milliseconds: record at {1.0 / _SLOWEST:.2g} Hz or more, better 1 kHz"
         )
 
 
@@ -95,8 +117,14 @@ def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Ar
     if highest > most:
         kind = "a pneumatic axis has" if most == _MOST else "a hydraulic one has"
         raise DataError(f"{span} Pa, more than {kind}; {wanted}: check the unit, and --read-as if given")
+    if highest < -_VACUUM:
+        raise DataError(f"{span}: it counts the wrong way; change its sign where it is published")
     if lowest == highest or (np.mean(pressure < 0.0) > 0.2 and highest < _VACUUM):
-        raise DataError(f"{span} in {len(pressure)} samples: its sensor gives no signal; look at its plug and supply")
+        word = "no-supply" if topic.startswith("supply") else f"no-pressure-{topic[8]}"
+        raise DataError(
+            f"{span} in {len(pressure)} samples: its sensor gives no signal; look at its plug and supply, or type "
+            f"--read-as {word} to judge the recording without it"
+        )
     if highest < _USUAL:
         unit = _unit(both if all(one.max() < _VACUUM for one in both) else [pressure])
         raise DataError(f"{span}, as it would be in {_named(unit, both)}; {wanted}: {_advice(unit, both)}")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import MARGIN
+from pneumo_ros.diagnose.score import MARGIN
 from pneumo_ros.report.bars import bars, guide, labels
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
 from pneumo_ros.wording.candidates import ADDED, REFUSED, RIVAL, STATES, CandidateWords

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from pneumo_ros.diagnose.candidate import MARGIN
+from pneumo_ros.diagnose.score import MARGIN
 from pneumo_ros.report.candidate_charts import candidate_charts
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import Content, Html, table, tag

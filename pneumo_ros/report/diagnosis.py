@@ -12,6 +12,7 @@ from pneumo_ros.report.machine import machine_section
 from pneumo_ros.report.origin import origin_section
 from pneumo_ros.report.remains import remains_section
 from pneumo_ros.report.residuals import residuals_section
+from pneumo_ros.report.summary import summary_section
 from pneumo_ros.report.waterfall import waterfall_section
 from pneumo_ros.wording.diagnosis import diagnosis
 
@@ -34,6 +35,7 @@ def diagnosis_report(
         good=outcome.verdict != UNKNOWN,
         badge=badge(said),
         sections=(
+            summary_section(said, outcome),
             answer_section(said, outcome, origin),
             waterfall_section(said),
             candidates_section(said.candidates),

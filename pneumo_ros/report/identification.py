@@ -26,8 +26,7 @@ def identification_report(result: dict[str, Any], model: "Model", origin: dict[s
         good=fits and not unknown,
         sections=(
             found_section(result),
-            static_map_section(result),
-            windows_section(result),
+            *(() if result["motion"] else (static_map_section(result), windows_section(result))),
             machine_section(model, None),
             origin_section(origin),
         ),

@@ -11,6 +11,7 @@ from pneumo_ros.report.chart import Chart, Panel, Report, Section, Trace
 from pneumo_ros.report.heat import heat_table
 from pneumo_ros.report.markup import Html, data_block, tag
 from pneumo_ros.report.series import encode
+from pneumo_ros.report.still import still as drawing
 
 
 def page_html(report: Report) -> Html:
@@ -22,7 +23,7 @@ def page_html(report: Report) -> Html:
     body = (
         tag("a", "Skip to the content", class_="skip", href="#content"),
         _header(report),
-        tag("main", [section_html(section) for section in report.sections], id="content", tabindex="-1"),
+        tag("main", [section_html(section, stills=True) for section in report.sections], id="content", tabindex="-1"),
         data_block("result", report.result),
         data_block("charts", charts),
         *(Html(f"<script>{text}</script>") for text in scripts),
@@ -61,7 +62,7 @@ def _header(report: Report) -> Html:
         tag("h1", report.title),
         _verdict(report),
         tag("nav", tag("ul", links), aria_label="Sections"),
-        tag("noscript", tag("p", "The plots need JavaScript; tables and numbers do not need it.", class_="warning")),
+        tag("noscript", tag("p", "Without JavaScript the plots are drawings that cannot be zoomed.", class_="warning")),
         tag("p", class_="warning", id="trouble", hidden=True, role="alert"),
     )
 
@@ -76,16 +77,16 @@ def _verdict(report: Report) -> Html:
     return tag("p", sign, words, class_=f"verdict large {badge.tone}")
 
 
-def section_html(section: Section, level: int = 2) -> Html:
-    """A section with its figures and parts; a folded one opens by a click."""
+def section_html(section: Section, level: int = 2, *, stills: bool = False) -> Html:
+    """A section with its figures and parts; a folded one opens by a click. `stills`: each chart as a drawing, too."""
     heading = tag(f"h{level}", section.title, id=f"{section.identifier}-title")
-    figures = [figure_html(chart) for chart in section.charts]
+    figures = [figure_html(chart, still=stills) for chart in section.charts]
     inner: list[Html] = [section.body]
     if section.heat:
         inner.append(heat_table(section.heat))
     if figures:
         inner.append(tag("div", figures, class_="charts" if section.columns == 1 else "charts beside"))
-    inner += [section_html(part, level + 1) for part in section.parts]
+    inner += [section_html(part, level + 1, stills=stills) for part in section.parts]
     label = f"{section.identifier}-title"
     if section.folded:
         folded = tag("details", tag("summary", heading), inner)
@@ -93,12 +94,12 @@ def section_html(section: Section, level: int = 2) -> Html:
     return tag("section", heading, inner, id=section.identifier, aria_labelledby=label, tabindex="-1")
 
 
-def figure_html(chart: Chart) -> Html:
-    """The place of a chart, which the page's script fills once it comes into view."""
+def figure_html(chart: Chart, *, still: bool = False) -> Html:
+    """The place of a chart, which the page's script fills once it comes into view; `still`: its drawing for paper."""
     words = f"{chart.title}. {chart.words}"
     place = tag("div", class_="plot", id=chart.name, style=f"height:{chart.height}px", role="img", aria_label=words)
     caption = tag("figcaption", tag("strong", chart.title), " ", tag("span", chart.words))
-    return tag("figure", caption, place)
+    return tag("figure", caption, place, drawing(chart) if still else "")
 
 
 def chart_json(chart: Chart) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pneumo_ros.environment import MissingDependencyError, require_ros
 
-_EXECUTABLES = ("simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
+_EXECUTABLES = ("simulator", "controller", "axis", "recorder", "player", "experiment", "identification", "commission")
 
 try:
     require_ros()

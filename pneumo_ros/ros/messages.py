@@ -55,6 +55,13 @@ def joint_state(joint: str, velocity: bool = True, effort: bool = True) -> Templ
     return Template(message, [position, *speeds, *forces])
 
 
+def load_cell(joint: str) -> Template:
+    """Template of a joint state with an effort alone; `fill` takes the force [N]."""
+    message = JointState(name=[joint], effort=[3.4567e-89])
+    message.header.stamp = _MARK
+    return Template(message, [3.4567e-89])
+
+
 def pressure(frame: str) -> Template:
     """Template of a pressure at `frame`; `fill` takes pressure [Pa] and variance [Pa2]."""
     value, variance = 1.2345e-67, 2.3456e-78

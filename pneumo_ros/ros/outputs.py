@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 
-from rclpy.duration import Duration
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -14,10 +13,9 @@ from pneumo_ros.records.block import Channel
 from pneumo_ros.records.contract import GLOBAL_TYPES, split
 from pneumo_ros.records.message_types import channel_types, same_fields, types_of
 from pneumo_ros.ros.message_classes import definition, message_class
-from pneumo_ros.ros.qos import LATCHED
+from pneumo_ros.ros.qos import ACKNOWLEDGED, LATCHED
 
 REPLAY = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)  # bursts must not overflow the queue
-ACKNOWLEDGED = Duration(seconds=1.0)  # longest wait for subscribers that lack messages
 
 
 class Outputs:
@@ -42,6 +40,10 @@ class Outputs:
     def names(self) -> list[str]:
         """Names under which topics are played."""
         return [publisher.topic_name for publisher in self._publishers.values()]
+
+    def name(self, topic: str) -> str:
+        """Name under which a recorded topic is played."""
+        return str(self._publishers[topic].topic_name)
 
     def send(self, topic: str, payload: bytes) -> None:
         """Publish one message of a recorded topic."""

@@ -13,6 +13,8 @@ from rosgraph_msgs.msg import Clock
 from pneumo_ros.axis.health import Health
 from pneumo_ros.axis.playback import Playback
 from pneumo_ros.axis.priority import PRIORITY, take_priority
+from pneumo_ros.axis.rig import SETTINGS as RIG
+from pneumo_ros.axis.roles import CONTROLLER, PLANT
 from pneumo_ros.axis.setting import Setting
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.nearest import unknown_name
@@ -21,12 +23,15 @@ from pneumo_ros.records.bag import Message, Overview
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.node import AxisNode
 from pneumo_ros.ros.outputs import Outputs
+from pneumo_ros.ros.replayed import ReplayedCommands
 from pneumo_ros.ros.run import run
 
 CLOCK = "/clock"
+_CLAIMS = tuple(f"claims/{role.name}" for role in (PLANT, CONTROLLER))
 SWITCH_INTERVAL = 5e-4  # s; Python's own 5 ms would let reading ahead delay a message
 POLL = 0.02  # s between two looks for subscribers
 SETTLE = 0.3  # s; a subscriber may find its publisher later than the publisher finds it
+WATCH = 1.0  # s between two looks for a rig beside recorded commands
 LATE = 0.02  # s of delay from which a late message is reported
 
 SETTINGS = (
@@ -37,6 +42,7 @@ SETTINGS = (
     Setting("loop", False, "begin again at the end", live=False),
     Setting("publish_clock", False, "send the recorded time on /clock", live=False),
     Setting("wait", 3.0, "longest wait for a subscriber to every topic before the start", "s", 0.0, 3600.0, live=False),
+    *(setting for setting in RIG if setting.name != "read_as"),
     PRIORITY,
 )
 
@@ -55,13 +61,16 @@ class Player(AxisNode):
             self.get_logger().warning(sentence)
         self._check(overview)
         self._clock_output = self.create_publisher(Clock, CLOCK, 10) if self.parameters["publish_clock"] else None
-        self._outputs = Outputs(self, [overview.channels[topic] for topic in self._chosen(bag.path, overview)])
+        chosen = self._chosen(bag.path, overview)
+        self._outputs = Outputs(self, [overview.channels[topic] for topic in chosen])
+        self._commands = ReplayedCommands(self, self._outputs, chosen, self.parameters.values())
         self._playback = Playback(
             bag, overview, self._outputs.__contains__, self.parameters["rate"], self.parameters["start_offset"]
         )
         self._duration = (overview.end - overview.start) * 1e-9
         self._rounds = 0
         self._thread = threading.Thread(target=self._play, name="playback")
+        self.create_timer(WATCH, self._watch, clock=self.steady_clock)
 
     def start(self) -> None:
         """Begin to play."""
@@ -95,15 +104,23 @@ class Player(AxisNode):
         try:
             take_priority(self.parameters[PRIORITY.name])
             self._await_subscribers()
+            self._watch()
             while not self._playback.stop.is_set():
                 self._playback.play(self._send, self._tick if self._clock_output else None)
                 self._rounds += 1
                 if not self.parameters["loop"]:
                     break
+            self._commands.close()
             self._outputs.flush()
             self.end()
         except Exception as failure:  # the main thread reports it
             self.fail(failure)
+
+    def _watch(self) -> None:
+        """End where a rig would get recorded commands and nobody has said which signal closes its valve."""
+        if self.failure is None and (refusal := self._commands.refusal()):
+            self._playback.stop.set()
+            self.fail(UsageError(refusal))
 
     def _await_subscribers(self) -> None:
         """Wait for discovery: a subscriber that has not found this node misses the first messages."""
@@ -135,6 +152,7 @@ class Player(AxisNode):
             if not matching:
                 raise DataError(f"{path}: {unknown_name('topic', pattern, overview.channels)}")
             chosen |= matching
+        chosen -= {name for name in chosen if name.endswith(_CLAIMS)}  # of nodes that ran then
         if self.parameters["publish_clock"]:
             chosen.discard(CLOCK)  # there can be one clock only
         return sorted(chosen)

@@ -10,7 +10,9 @@ from pneumo_ros.runs.run import PARTS, Run
 
 Array = NDArray[np.float64]
 
-SAME, ALIKE = 1e-3, 0.2  # relative difference of sample times: equal; and the largest that interpolation bridges
+# relative difference of sample times: that counts as equal (two runs may be twice as far apart), and the largest that
+# interpolation bridges
+SAME, ALIKE = 2e-4, 0.2
 
 
 def on_one_clock(runs: Sequence[Run]) -> list[Run]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.mechanical import mechanical
+from pneumo_ros.plant.mechanical import mechanical, pneumatic
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import SENSORS, Run
 
@@ -19,7 +19,8 @@ def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
 def measuring(model: Model, runs: Sequence[Run]) -> Model:
     """The model with the recorded supply pressure in place of its constant, where every run has it.
 
-    Its mechanics alone, where no run has a valve command; DataError where some have one.
+    Its mechanics alone, where no run has a valve command; one chamber alone, where no run has the other's pressure.
+    DataError where some have one.
     """
     alone = [run for run in runs if run.force_driven]
     if alone and not model.force_driven:
@@ -28,7 +29,15 @@ def measuring(model: Model, runs: Sequence[Run]) -> Model:
                 f"{alone[0].name} has no valve command, {commanded[0]} has one; give recordings of one kind, or a "
                 "machine file without the section 'chambers', to judge friction and load alone in all of them"
             )
-        model = mechanical(model) or model
+        model = mechanical(model, by_force=not alone[0].by_pressures) or model
+    if assumed := [run for run in runs if run.assumed]:
+        if others := [run for run in runs if run.assumed != assumed[0].assumed]:
+            chamber = next(iter(assumed[0].assumed)).split("_")[1]
+            raise DataError(
+                f"{assumed[0].name} has no chamber_{chamber}/pressure, {others[0].name} has it; give recordings of one "
+                f"kind, or type --read-as no-pressure-{chamber} to judge the other chamber in all of them"
+            )
+        model = pneumatic(model)
     return model.measuring([name for name in IN_PLACE if name in measured_inputs(runs)])
 
 
@@ -47,22 +56,56 @@ def check_inputs(model: Model, run: Run) -> None:
     )
 
 
+def check_driven(model: Model, runs: Sequence[Run]) -> None:
+    """Raises DataError where nothing that was measured drives the piston, so that friction cannot be identified."""
+    if not model.imposed:
+        return
+    absent = sorted({name.split("_")[1] for run in runs for name in run.assumed})
+    lacking = f"chamber_{absent[0]}/pressure" if absent else "measured force on the piston, whose motion is imposed"
+    raise DataError(
+        f"{runs[0].name} has no {lacking}: friction cannot be identified. To fit what the chambers show, type: pneumo "
+        f"compare {runs[0].name} --fit {runs[0].name} --out MODEL"
+    )
+
+
 def judged(model: Model, runs: Sequence[Run]) -> str:
     """Which equations these runs judge, which they do not, and the sensor that would add them: one line."""
+    assumed = sorted({name.split("_")[1] for run in runs for name in run.assumed})
     found, lacking = [], []
     if model.imposed and not model.force_driven:
-        lacking.append("momentum (a load_cell would add it)")
+        lacking.append(f"momentum ({_adding_momentum(model, assumed)} would add it)")
     else:
-        found.append("momentum")
+        found.append(f"momentum{_open_side(runs)}")
     if model.force_driven:
-        some = all(run.pressure_a is not None or "p_a" in run.further for run in runs)
+        some = all(run.pressure_a is not None or run.pressure_b is not None or "p_a" in run.further for run in runs)
         needed = "valve/command" if some else "valve/command and both chamber pressures"
         lacking.append(f"chambers and valve ({needed}, and a machine file with chambers, would add them)")
     else:
-        found += ["chamber a", "chamber b"]
-        if "measured_supply" not in measured_inputs(runs):
+        driven = ", driven by the position" if model.imposed else ""
+        found += [f"chamber {one.side}{driven}" for one in model.chambers if one.side not in assumed]
+        lacking += [f"chamber {one} (chamber_{one}/pressure would add it)" for one in assumed]
+        if model.has_valve and _supply_unmeasured(runs):
             lacking.append("a sagging supply by itself (supply/pressure would add it)")
     if "load_force" not in measured_inputs(runs) and not model.imposed:
         lacking.append("load apart from friction (a load_cell would add it)")
     said = f"Judged: {', '.join(found)}."
     return f"{said} Not judged: {'; '.join(lacking)}." if lacking else said
+
+
+def _supply_unmeasured(runs: Sequence[Run]) -> bool:
+    name = IN_PLACE[0]
+    return name not in measured_inputs(runs) or any(name in run.computed for run in runs)
+
+
+def _adding_momentum(model: Model, assumed: Sequence[str]) -> str:
+    """The sensor that would add the momentum equation where the motion is an input."""
+    return f"chamber_{assumed[0]}/pressure" if assumed else "a load_cell"
+
+
+def _open_side(runs: Sequence[Run]) -> str:
+    """What is assumed of a chamber without a sensor where the pressures drive the piston."""
+    absent = [n for n in ("p_a", "p_b") if any(run.by_pressures and n not in run.further for run in runs)]
+    if not absent:
+        return ""
+    side = absent[0][-1]
+    return f" (the other side is taken at the atmosphere's pressure; chamber_{side}/pressure would show it)"

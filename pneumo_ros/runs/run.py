@@ -1,14 +1,17 @@
 """A recording laid on a uniform time grid, as the integrator and the estimators need it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import MEASURED
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.actuator import SIDES, Chamber
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.records import Recording
 from pneumo_ros.records.unfit import check_use
@@ -21,14 +24,16 @@ PARTS = 10  # the input is held over tenths of a sample, so that a command betwe
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
 # the best sensors of such machines
 _FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3}
-SENSORS = {  # topic of each input that is measured
+SENSORS = {  # topic of each input beside U
+    "U_b": "valve_b/command",
     "p_a": "chamber_a/pressure",
     "p_b": "chamber_b/pressure",
-    "measured_supply": "supply/pressure",
     "imposed_velocity": "imposed motion",
-    "load_force": "load_cell",
+    **{one.input: one.topic for one in MEASURED},
 }
+POSITION = "position_m"
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
+ATMOSPHERE = 101325.0  # Pa, for machine files without it
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,9 @@ class Run:
     further: Mapping[str, Array] = field(default_factory=dict)  # as `input`, what else is held [Pa, m/s, N]
     imposed: bool = False  # whether a test machine imposed the motion: a force is predicted, or else the pressures
     begin: float = 0.0  # [s] running time at the first point: later than 0 in a stretch of a recording
+    by_pressures: bool = False  # whether the input is the force of the measured pressures on the piston
+    computed: frozenset[str] = frozenset()  # names in `further` that no sensor measured: a model gives them
+    assumed: frozenset[str] = frozenset()  # report names of pressures that no sensor measured: they are not judged
 
     def __len__(self) -> int:
         return len(self.position)
@@ -76,8 +84,20 @@ class Run:
 
         Raises DataError for an input that the recording lacks.
         """
-        means = self.inputs(names).reshape(-1, PARTS, len(names)).mean(axis=1)
-        return np.concatenate([means, means[-1:]])
+        if names not in self._sampled:
+            means = self.averaged(names, 1)
+            self._sampled[names] = np.concatenate([means, means[-1:]])
+        return self._sampled[names]
+
+    def averaged(self, names: tuple[str, ...], parts: int) -> Array:
+        """The inputs of a model ((n - 1) * parts, names), their means over `parts` of each sample, a divisor of PARTS.
+
+        Raises DataError for an input that the recording lacks.
+        """
+        if (names, parts) not in self._averaged:
+            held = self.inputs(names)
+            self._averaged[names, parts] = held.reshape(-1, PARTS // parts, len(names)).mean(axis=1)
+        return self._averaged[names, parts]
 
     def _held_input(self, name: str) -> Array:
         if name != DRIVE and name not in self.further:
@@ -87,8 +107,17 @@ class Run:
             )
         return self.input if name == DRIVE else self.further[name]
 
+    # kept, as a diagnosis asks for the inputs of a run thousands of times
     @cached_property
     def _stacked(self) -> dict[tuple[str, ...], Array]:
+        return {}
+
+    @cached_property
+    def _averaged(self) -> dict[tuple[tuple[str, ...], int], Array]:
+        return {}
+
+    @cached_property
+    def _sampled(self) -> dict[tuple[str, ...], Array]:
         return {}
 
     @cached_property
@@ -103,14 +132,21 @@ class Run:
         every = {"position_m": self.position, "pressure_a_pa": self.pressure_a, "pressure_b_pa": self.pressure_b}
         return {name: signal for name, signal in every.items() if signal is not None}
 
+    def pressure_of(self, chamber: str) -> Array | None:
+        """The measured pressure (n,) [Pa] of chamber `a` or `b`; None where no sensor measured it."""
+        pressure = self.pressure_a if chamber == "a" else self.pressure_b
+        return None if f"pressure_{chamber}_pa" in self.assumed else pressure
+
     @property
     def judged(self) -> dict[str, Array]:
-        """The signals (n,) that a model predicts: `signals`, or force_n and no position where motion was imposed."""
-        if not self.imposed:
-            return self.signals
-        if self.force_driven:
+        """The signals (n,) that a model predicts: the measured ones, without position where the motion is an input.
+
+        Where it was imposed on a force-driven machine, force_n.
+        """
+        if self.imposed and self.force_driven:
             return {"force_n": np.append(self.force, self.force[-1])}
-        return {name: signal for name, signal in self.signals.items() if name != "position_m"}
+        driving = {"position_m"} if self.imposed else set()
+        return {name: signal for name, signal in self.signals.items() if name not in driving | self.assumed}
 
     @cached_property
     def noise(self) -> dict[str, float]:
@@ -121,7 +157,17 @@ class Run:
     @cached_property
     def smoothed(self) -> Smoothed:
         """Smoothed measured states, with velocity and acceleration."""
-        return smoothed(self.sample_time, self.position, self.pressure_a, self.pressure_b)
+        further = {name: signal for name, signal in self.signals.items() if name != POSITION}
+        return smoothed(self.sample_time, self.position, further)
+
+    def sensed(self, chambers: Sequence[Chamber]) -> list[Chamber]:
+        """Those chambers whose pressure a sensor measured: the others are not judged."""
+        return [chamber for chamber in chambers if chamber.signal not in self.assumed]
+
+    def pressures(self, chambers: Sequence[Chamber]) -> Array:
+        """(n, chambers) the measured pressures of a machine's chambers [Pa]."""
+        columns = [self.signals[chamber.signal] for chamber in chambers]
+        return np.stack(columns, axis=1) if columns else np.empty((len(self), 0))
 
 
 def make_run(
@@ -129,21 +175,32 @@ def make_run(
     force_driven: bool | None = None,
     imposed: bool = False,
     areas: tuple[float, float] | None = None,
+    atmosphere: float = ATMOSPHERE,
+    chambers: Sequence[Chamber] | None = None,
+    commanded: bool = True,
 ) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
     `force_driven` None takes the recording's own kind; `imposed`: the velocity is an input, as for a model whose
     motion a test machine imposes. Where the recording says that its motion is imposed, a force-driven run predicts its
     force, that of the load cell if there is one. With piston `areas` [m2] of the chambers a and b, the pressures drive
-    a force-driven run that has no effort. Raises DataError when the recording is too short, sampled too slowly, or
-    lacks the input or the absolute pressures of this kind.
+    a force-driven run that has no effort; a chamber without a sensor then has the pressure of the `atmosphere` [Pa]. In
+    chambers whose motion is an input, a pressure without a sensor is constant and not judged. `chambers` are those of
+    the machine, by default of a double-acting cylinder; the pressure of another side is left out. Without a valve, a
+    run need not be `commanded`. Raises DataError when the
+    recording is too short, sampled too slowly, or lacks the input or the absolute pressures of this kind.
     """
     time = recording.time
     driven = recording.force_driven if force_driven is None else force_driven
-    if driven and areas and recording.pressures_drive:
-        thrust = areas[0] * _array(recording.pressure_a) - areas[1] * _array(recording.pressure_b)
-        recording = replace(recording, effort=thrust)
-    check_use(recording, driven, imposed)
+    by_pressures = bool(driven and areas and recording.pressures_drive)
+    if areas and by_pressures:
+        both = [atmosphere if p is None else p for p in (recording.pressure_a, recording.pressure_b)]
+        recording = replace(recording, effort=np.asarray(areas[0] * both[0] - areas[1] * both[1]))
+    fields = [f"pressure_{side}" for side in SIDES] if chambers is None else [chamber.field for chamber in chambers]
+    if not driven:
+        none: dict[str, Any] = {f"pressure_{s}": None for s in SIDES if f"pressure_{s}" not in fields}
+        recording = replace(recording, **none)
+    check_use(recording, driven, imposed, fields, commanded)
     counts = np.maximum(np.rint(np.diff(time) / recording.sample_time), 1.0)  # jitter must not change the rate
     intervals = int(counts.sum())
     step = float((time[-1] - time[0]) / intervals)
@@ -156,21 +213,37 @@ def make_run(
 
     position = lay(recording.position)
     assert position is not None
+    pressures, assumed = {"a": lay(recording.pressure_a), "b": lay(recording.pressure_b)}, set[str]()
+    for chamber, other in ("ab", "ba") if imposed and not driven else ():
+        if pressures[chamber] is None and f"pressure_{chamber}" in fields:
+            assumed.add(f"pressure_{chamber}_pa")
+            pressures[chamber] = np.full(len(grid), _array(pressures[other]).mean())
     cells = np.repeat(grid[:-1], PARTS) + step / PARTS * (np.tile(np.arange(PARTS), intervals) + 0.5)
     if driven:
         held = np.interp(cells, time, _force(recording))
     else:
-        held = np.zeros(len(cells)) if imposed and recording.command is None else _commands_at(recording, cells)
+        free = recording.command is None and (imposed or not commanded)
+        held = np.zeros(len(cells)) if free else _commands_at(recording, cells)
     measured = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
-    load = None if driven and recording.imposed else recording.load_cell  # there it is the force that is predicted
-    measured |= {"measured_supply": recording.supply_pressure, "load_force": load}
+    measured |= {one.input: recording.signals.get(one.name) for one in MEASURED}
+    if driven and recording.imposed:
+        del measured["load_force"]  # there it is the force that is predicted
     further = {name: np.interp(cells, time, signal) for name, signal in measured.items() if signal is not None}
+    if recording.command_b is not None and recording.command_b_time is not None:
+        further["U_b"] = _in_force(recording.command_b_time, recording.command_b, cells)
     if imposed:
         further["imposed_velocity"] = np.repeat(np.diff(position) / step, PARTS)
     return Run(
-        recording.name, step, position, lay(recording.pressure_a), lay(recording.pressure_b), held,
-        distance < _GAP * step, driven, further, imposed or (driven and recording.imposed),
+        recording.name, step, position, pressures["a"], pressures["b"], held, distance < _GAP * step, driven, further,
+        imposed or (driven and recording.imposed), by_pressures=by_pressures, assumed=frozenset(assumed),
     )  # fmt: skip
+
+
+def run_for(recording: Recording, model: Model) -> Run:
+    """`make_run` with what `model` needs; DataError when the recording lacks it."""
+    areas = (model["piston.area_a"], model["piston.area_b"])
+    atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
+    return make_run(recording, model.force_driven, model.imposed, areas, atmosphere, model.chambers, model.has_valve)
 
 
 def _force(recording: Recording) -> Array:
@@ -191,6 +264,9 @@ def check_position(model: Model, run: Run) -> None:
     most = abs(run.position[farthest])
     if most > 1.05 * reach:
         unit = "; if it is in mm, type --read-as mm" if _MILLIMETRES * reach < most < 1050.0 * reach else ""
+        if most <= 2.05 * reach and np.ptp(run.position) <= 2.05 * reach:
+            zero = 1e3 * reach * np.sign(run.position[farthest])
+            unit = f"; if it is zero at an end, type --read-as zero={zero:g}mm; pneumo rig check finds such things"
         raise DataError(
             f"{run.name}: the position is {run.position[farthest]:.4g} m at {run.time[farthest]:.3f} s, outside the "
             f"stroke of {model.name}, {-reach:g} to {reach:g} m{unit}; positions are in m from mid stroke, and the "
@@ -200,5 +276,8 @@ def check_position(model: Model, run: Run) -> None:
 
 def _commands_at(recording: Recording, times: Array) -> Array:
     """The command in force at each time: the last one recorded before it, the first one before that."""
-    when, value = _array(recording.command_time), _array(recording.command)
+    return _in_force(_array(recording.command_time), _array(recording.command), times)
+
+
+def _in_force(when: Array, value: Array, times: Array) -> Array:
     return value[np.maximum(np.searchsorted(when, times, side="right") - 1, 0)]

@@ -12,7 +12,7 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-# frames (lanes, n, 2 or 4) and lane numbers -> states and mean derivatives, both (lanes, n, states)
+# frames (lanes, n, frame) and lane numbers -> states and mean derivatives, both (lanes, n, states)
 Drive = Callable[[Array, Index], tuple[Array, Array]]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
@@ -20,7 +20,7 @@ _ENOUGH = (1e-7, 1.0, 1.0)  # m, Pa, Pa: a tenth of what any sensor of such a ma
 
 
 def corrected(model: Model, frame: Array, run: Run) -> Array:
-    """True frame states (n, 2 or 4) from measured ones: y, v, p_a, p_b without the model's sensor effects.
+    """True frame states (n, frame) from measured ones: y, v, p_a, p_b without the model's sensor effects.
 
     `frame` holds the measured position, its derivative and, with chambers, the pressures. A model without sensor
     effects returns the same array.
@@ -47,7 +47,7 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
 def driven_lanes(
     model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, enough: Sequence[float]
 ) -> tuple[Array, Array, Array]:
-    """Frame states without sensor effects (lanes, n, 2 or 4), and states and rates from `drive` along them.
+    """Frame states without sensor effects (lanes, n, frame), and states and rates from `drive` along them.
 
     The readings r(x) are inverted by at most two steps of the fixed point x = x_measured - (r(x) - x); each step drives
     the sensors' own states again. The velocity is corrected by the derivative of the correction of position. Each lane
@@ -72,7 +72,7 @@ def driven_lanes(
 
 
 def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:
-    """What to add to the readings (lanes, n, 1 or 3) of position and pressures to get these states (lanes, n, states).
+    """What to add to the readings (lanes, n, sensed) of position and pressures to get these states (lanes, n, states).
 
     parameters (lanes, parameters) or None for the model's own.
     """
@@ -85,7 +85,7 @@ def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) 
 
 
 def shifted(frame: Array, shift: Array, sample_time: float) -> Array:
-    """The frame (n, 2 or 4) with `shift` (n, 1 or 3) added to position and pressures, and its rate to the velocity."""
+    """The frame (n, frame) with `shift` (n, sensed) added to position and pressures, and its rate to the velocity."""
     moved: Array = frame.copy()
     moved[:, 0] += shift[:, 0]
     moved[:, 1] += smooth(shift[:, 0], sample_time, HALF_WIDTH, 3, 1)

@@ -1,11 +1,14 @@
 """Velocity and acceleration from sampled positions, with a known noise gain."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs, savgol_filter
+
+from pneumo_ros.plant.actuator import Chamber
 
 Array = NDArray[np.float64]
 
@@ -14,17 +17,28 @@ HALF_WIDTH = 0.012  # s, of the local polynomials
 
 @dataclass(frozen=True)
 class Smoothed:
-    """A recording smoothed: states (n, 2 or 4), which are y, v, p_a and p_b, and acceleration (n,)."""
+    """A recording smoothed: motion (n, 2), which is y and v, acceleration (n,), and further signals (n,) by name."""
 
-    frame: Array
+    motion: Array
     acceleration: Array
+    further: Mapping[str, Array]
+
+    def states(self, chambers: Sequence[Chamber]) -> Array:
+        """The measured states (n, 2 + chambers) of a machine with these chambers: y, v and their pressures."""
+        return np.column_stack([self.motion, *(self.further[chamber.signal] for chamber in chambers)])
+
+    @property
+    def frame(self) -> Array:
+        """(n, 2 + further) y, v and every further signal."""
+        return np.column_stack([self.motion, *self.further.values()])
 
 
-def smoothed(sample_time: float, position: Array, *pressures: Array | None) -> Smoothed:
-    """Position, velocity, pressures and acceleration by local polynomials over +-12 ms."""
-    columns = [smooth(position, sample_time, HALF_WIDTH, 3), smooth(position, sample_time, HALF_WIDTH, 3, 1)]
-    columns += [smooth(p, sample_time, HALF_WIDTH, 2) for p in pressures if p is not None]
-    return Smoothed(np.stack(columns, axis=1), smooth(position, sample_time, 1.5 * HALF_WIDTH, 3, 2))
+def smoothed(sample_time: float, position: Array, further: Mapping[str, Array]) -> Smoothed:
+    """Position, velocity, acceleration and further signals (pressures) by local polynomials over +-12 ms."""
+    motion = [smooth(position, sample_time, HALF_WIDTH, 3), smooth(position, sample_time, HALF_WIDTH, 3, 1)]
+    acceleration = smooth(position, sample_time, 1.5 * HALF_WIDTH, 3, 2)
+    others = {name: smooth(signal, sample_time, HALF_WIDTH, 2) for name, signal in further.items()}
+    return Smoothed(np.stack(motion, axis=1), acceleration, others)
 
 
 def smooth(signal: Array, sample_time: float, half_width: float, order: int, derivative: int = 0) -> Array:

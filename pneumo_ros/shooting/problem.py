@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
-from pneumo_ros.shooting.segments import PROBE, Segments
+from pneumo_ros.shooting.segments import Segments
+from pneumo_ros.shooting.slopes import LANES, start_slopes
 
 Array = NDArray[np.float64]
 
 NOISE_TAIL = 4.0  # noise deviations: beyond, the loss of an error is linear
 _BENT = 5e-3  # share of the cost beyond noise: least gain for a further step of a model that lacks an effect
-_LANES = 1024  # lanes at once: more need memory and save no time
 
 
 @dataclass(frozen=True)
@@ -101,18 +101,19 @@ class Problem:
     def jacobian(self, states: Array, theta: Array) -> Array:
         """Derivatives (segments, states + free, residuals) by starts in scales and by parameters in priors."""
         steps, (count, n) = self.unknowns.steps(theta), states.shape
-        values = np.concatenate([np.tile(theta, (n + 1, 1)), theta + np.diag(steps)])
-        moved = np.concatenate([states, self.segments.probes(states), np.tile(states, (len(theta), 1))])
-        lanes = moved.reshape(len(values), count, n)
-        scale = np.concatenate([np.full(n, 1.0 / PROBE), self.unknowns.prior / steps])
-        base = self.lanes(self.coarse, states, theta[None])[0]
-        jacobian = np.empty((count, len(scale), base.shape[1]))
-        each = max(_LANES // count, 1)
-        for first in range(1, len(values), each):
-            part = slice(first, first + each)
-            found = self.lanes(self.coarse, lanes[part].reshape(-1, n), values[part])
-            for j, residuals in enumerate(found, first - 1):
-                jacobian[:, j] = (residuals - base) * scale[j]
+
+        def residuals(part: Segments, starts: Array) -> Array:
+            return self.lanes(part, starts, np.tile(theta, (len(starts) // len(part), 1)))
+
+        base, slopes = start_slopes(self.model, self.coarse, states, residuals)
+        jacobian = np.empty((count, n + len(theta), base.shape[1]))
+        jacobian[:, :n] = slopes
+        values, each = theta + np.diag(steps), max(LANES // count, 1)
+        for first in range(0, len(theta), each):
+            some = values[first : first + each]
+            found = self.lanes(self.coarse, np.tile(states, (len(some), 1)), some)
+            for j, one in enumerate(found, first):
+                jacobian[:, n + j] = (one - base) * (self.unknowns.prior[j] / steps[j])
         return jacobian
 
     def equations(self, states: Array, theta: Array, residuals: Array) -> Equations:

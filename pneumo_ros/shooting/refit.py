@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pneumo_ros.blas import on_one_thread
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.clock import on_one_clock
@@ -28,19 +29,21 @@ SEGMENT = 0.5  # s
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
 
 # Parameters that a scale, a ruler or a table determines better than a motion: fixed unless named.
-FIXED_SECTIONS = ("piston", "chambers", "air", "end_stop")
+FIXED_EFFECTS = ("end_stop", "arm_load")  # beside piston, air and what actuates the machine
 FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_friction.breakaway_ratio")
 
 
 def default_free(model: Model) -> tuple[str, ...]:
     """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows.
 
-    What the machine file states to be uncertain is free, too.
+    What whoever built the machine chose is not free either. What the machine file states to be uncertain is free, too.
     """
+    fitted = [name for name in model.effects if name not in FIXED_EFFECTS]
     return tuple(
         name
         for name in model.parameters
-        if name in model.uncertainty or (name.partition(".")[0] not in FIXED_SECTIONS and name not in FIXED)
+        if name in model.uncertainty
+        or (name.partition(".")[0] in fitted and name not in FIXED and not model.specification(name).chosen)
     )
 
 
@@ -71,6 +74,7 @@ def refit(
     )
 
 
+@on_one_thread()
 def refit_segments(
     model: Model,
     segments: Segments,

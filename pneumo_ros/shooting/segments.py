@@ -12,11 +12,11 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.model import STEP
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.shooting.lead import Lead, columns
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-PROBE = 1e-2  # scales: step of finite differences
 _COARSE = 2.0 * STEP  # s
 _WRONG = 1e9  # noise deviations: limit of an error, so that its square stays finite
 
@@ -43,6 +43,8 @@ class Segments:
     scale: Array
     shown: Array
     columns: tuple[int, ...]
+    lead: Lead  # states that the command alone determines, at the start of each segment before `pick`
+    row: Index  # index of each segment among those
     run: Index  # the run of each segment
     at: Index  # its first grid point in that run
     runs: tuple[Run, ...]
@@ -54,7 +56,7 @@ class Segments:
 
     def pick(self, chosen: Index) -> "Segments":
         """Some of the segments, by index."""
-        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "run", "at")
+        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "row", "run", "at")
         return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
 
     def guessed(self, model: Model) -> "Segments":
@@ -66,12 +68,32 @@ class Segments:
             guess[rows], scale[rows] = found.states, found.scale
         return replace(self, guess=guess, scale=scale, shown=self.read(model, guess)[0])
 
-    def probes(self, states: Array) -> Array:
-        """States (states * segments, states), each entry in turn moved by `PROBE` of its scale: lanes of a Jacobian."""
-        moved = np.tile(states, (states.shape[1], 1, 1))
-        for j in range(states.shape[1]):
-            moved[j, :, j] += PROBE * self.scale[:, j]
-        return moved.reshape(-1, states.shape[1])
+    def estimated(self, model: Model) -> NDArray[np.bool_]:
+        """Which states (segments, states) measurements determine at the start: not those that follow from the command.
+
+        Where a run begins, nothing is known of the command before it: only levels and clocks are taken to be at rest.
+        """
+        found = np.ones(self.guess.shape, dtype=bool)
+        for name, column in zip(model.composition.commanded, columns(model), strict=True):
+            found[:, column] = (self.at == 0) & (name not in model.composition.memories)
+        return found
+
+    def completed(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
+        """States (copies * segments, states) with those that follow from the command, by the values of each copy.
+
+        parameters (copies * segments, parameters), the same in all segments of a copy, or None for the model's own.
+        """
+        if not model.composition.commanded:
+            return states
+        copies, given = self._copies(states), ~self.estimated(model)
+        full: Array = states.reshape(copies, *self.guess.shape).copy()
+        values = None if parameters is None else parameters.reshape(copies, len(self), -1)[:, 0]
+        for copy in range(copies):
+            known = self.lead.states(model, model.values if values is None else values[copy])[self.row]
+            for i, column in enumerate(columns(model)):
+                rows = given[:, column]
+                full[copy, rows, column] = known[rows, i]
+        return full.reshape(states.shape)
 
     def coarser(self) -> "Segments":
         """The same for integration in steps of 0.2 ms, with inputs held as long, where samples are that fine.
@@ -93,7 +115,7 @@ class Segments:
         apart = states.reshape(self._copies(states), *self.guess.shape) - self.guess
         if not model.composition.true_sensors:
             apart[..., self.columns] = self.read(model, states, parameters) - self.shown
-        return np.asarray(apart / self.scale)
+        return np.where(self.estimated(model), apart / self.scale, 0.0)
 
     def seated(self, model: Model, states: Array | None = None, shown: Array | None = None) -> Array:
         """States (segments, states), with measured ones moved so that sensors read `shown` (segments, signals).
@@ -120,8 +142,9 @@ class Segments:
     ) -> Array:  # fmt: skip
         """(lanes, samples, states or columns) from initial states (lanes, states), lanes a multiple of the segments."""
         copies = self._copies(states)
+        begin = self.completed(model, states, parameters)
         return model.simulate_lanes(
-            self.inputs, states, parameters, samples=self.samples, first=np.tile(self.first, copies),
+            self.inputs, begin, parameters, samples=self.samples, first=np.tile(self.first, copies),
             sample_time=self.sample_time, step=self.step, start=np.tile(self.start, copies), parts=self.parts,
             threads=threads, columns=columns,
         )  # fmt: skip
@@ -172,36 +195,40 @@ def cut(model: Model, runs: Sequence[Run], duration: float, rows: Index | None =
 def cut_at(model: Model, runs: Sequence[Run], starts: Sequence[Index], samples: int) -> Segments:
     """Segments of `samples` that begin at the given grid points of each run."""
     dt = runs[0].sample_time if runs else 1e-3
-    for run in runs:
-        if abs(run.sample_time / dt - 1.0) > 1e-3:
+    for one in runs:
+        if abs(one.sample_time / dt - 1.0) > 1e-3:
             raise UsageError(
-                f"{run.name} is sampled every {run.sample_time:g} s, {runs[0].name} every {dt:g} s; "
+                f"{one.name} is sampled every {one.sample_time:g} s, {runs[0].name} every {dt:g} s; "
                 "resample them to one sample time"
             )
     names = measured_columns(model)
     inputs, first = _inputs(model, runs, starts, samples)
     measured, weight = [], []
-    for run, begin in zip(runs, starts, strict=True):
+    for one, begin in zip(runs, starts, strict=True):
         rows = begin[:, None] + np.arange(1, samples + 1)
-        noise = run.noise
-        measured.append(np.stack([run.signals[name][rows] for name in names], axis=2))
-        weight.append(run.measured[rows][:, :, None] / np.array([noise[name] for name in names]))
+        noise = one.noise
+        measured.append(np.stack([one.signals[name][rows] for name in names], axis=2))
+        known = np.array([0.0 if name in one.assumed else 1.0 / noise[name] for name in names])
+        weight.append(one.measured[rows][:, :, None] * known)
     counts = [len(begin) for begin in starts]
+    run, at = np.repeat(np.arange(len(runs)), counts), np.concatenate(starts)
     nothing = np.zeros((sum(counts), len(model.states)))
     segments = Segments(
         sample_time=dt,
         samples=samples,
         inputs=inputs,
         first=first,
-        start=np.asarray(dt / PARTS * (np.concatenate(starts) * PARTS - first)),
+        start=np.asarray(dt / PARTS * (at * PARTS - first)),
         measured=np.concatenate(measured),
         weight=np.concatenate(weight),
         guess=nothing,
         scale=nothing,
         shown=np.zeros((sum(counts), len(names))),
         columns=tuple(names.values()),
-        run=np.repeat(np.arange(len(runs)), counts),
-        at=np.concatenate(starts),
+        lead=Lead(runs, run, at),
+        row=np.arange(sum(counts)),
+        run=run,
+        at=at,
         runs=tuple(runs),
     )
     return segments.guessed(model)

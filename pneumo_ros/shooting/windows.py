@@ -1,5 +1,6 @@
 """Prediction windows: how far the model runs from the measurement within a given horizon."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,8 @@ from pneumo_ros.shooting.start import start_states
 
 Array = NDArray[np.float64]
 
+HORIZON, SHORTER = 1.0, (0.5, 0.2, 0.1, 0.05)  # s
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -31,6 +34,32 @@ class Prediction:
     sample_time: float
     errors: dict[str, Array]
     states: Array  # (windows, samples, states)
+
+
+def fitting_horizon(runs: Sequence[Run], wanted: float | None = None) -> float:
+    """Length [s] of the windows in which the runs are predicted: `wanted`, or 1 s, or less where a run is shorter.
+
+    Or where one has no whole second between its gaps. Raises UsageError for a length that is not positive, or that a
+    run does not have.
+    """
+    shortest = min(runs, key=lambda run: len(run) * run.sample_time)
+    lasts = (len(shortest) - 1) * shortest.sample_time
+    if wanted is None:
+        some = (h for h in (HORIZON, *SHORTER) if h <= 0.95 * lasts and all(_holds(run, h) for run in runs))
+        return next(some, min(SHORTER[-1], 0.95 * lasts))
+    if not 0.0 < wanted < np.inf:
+        raise UsageError(f"--horizon {wanted:g} is not a length of time; give seconds, such as --horizon 1")
+    if wanted > lasts:
+        raise UsageError(
+            f"--horizon {wanted:g} is longer than {shortest.name}, which lasts {lasts:.3g} s; give a shorter one, or "
+            "leave that recording out"
+        )
+    return wanted
+
+
+def _holds(run: Run, horizon: float) -> bool:
+    samples = round(horizon / run.sample_time)
+    return samples >= 2 and len(side_by_side(run, samples)) > 0
 
 
 def predict(model: Model, run: Run, horizon: float) -> Prediction:
@@ -79,7 +108,7 @@ def _predict_from(model: Model, run: Run, starts: NDArray[np.int64], samples: in
 
 def _force_along(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:
     """The force that the imposed motion takes by the model: F + M (a - a_model), with the measured F and a."""
-    states, mean = driven(model, measured_frame(run, force_driven=True), run)
+    states, mean = driven(model, measured_frame(run, ()), run)
     mass = model["piston.mass"] + model.outputs(states, run.sampled(model.inputs))["added_mass"]
     error = mass * (run.smoothed.acceleration - centred(mean)[:, 1])
     rows = starts[:, None] + np.arange(1, samples + 1)

@@ -1,4 +1,4 @@
-"""Signals on an even clock: interpolated between the rows, low-pass filtered where the rate is lowered."""
+"""The even clock onto which the rows of a table are laid, and which of its points are measured."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,6 @@ from pneumo_ros.records.series import Series
 from pneumo_ros.tables.clock import FASTEST, SLOWEST, Clock
 
 MOST = 20_000_000  # points of a grid: 20 min at 20 kHz
-_SAME = 1.01  # a step this much longer lowers no rate
 
 
 def check_rate(rate: float | None) -> None:
@@ -52,28 +51,6 @@ def covered(grid: Array, time: Array, signals: Mapping[str, Array]) -> Array:
     last = min(int(one.stamp[-1]) for one in found) + step // 2
     kept = checks.outside_gaps(series.select((series.stamp >= first) & (series.stamp <= last)), found)
     return grid[kept.values["value"].astype(np.int64)]
-
-
-def laid(grid: Array, time: Array, values: Array, lowered: bool) -> Array:
-    """A signal (n,) over `time` (n,) [s] at the times `grid` (m,): linear between finite samples.
-
-    Where the rate may be `lowered`, and the steps of `grid` are longer than those of the samples, what is too fast for
-    it is filtered out first.
-    """
-    good = np.isfinite(values)
-    time, values = time[good], values[good]
-    if len(time) < 2 or len(grid) < 2:
-        return np.full(len(grid), values[0])
-    step, own = float(np.median(np.diff(grid))), float(np.median(np.diff(time)))
-    if not lowered or step <= _SAME * own:
-        return np.asarray(np.interp(grid, time, values))
-    from scipy.signal import resample_poly
-
-    times = max(int(np.ceil(step / own - 0.01)), 2)
-    count = int(round((grid[-1] - grid[0]) / step)) + 1
-    fine = grid[0] + step / times * np.arange(times * (count - 1) + 1)
-    slow = resample_poly(np.interp(fine, time, values), 1, times, padtype="line")
-    return np.asarray(np.interp(grid, fine[::times], slow))
 
 
 def _measured(signals: Mapping[str, Array]) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:

@@ -13,7 +13,8 @@ from pneumo_ros.tables.signals import SIGNALS
 from pneumo_ros.tables.table import Table
 from pneumo_ros.tables.units import UNITS, find_unit, unit_of
 
-_ALIKE = 0.9  # correlation of a velocity with the rate of its position
+_ALIKE = 0.9  # share by which a velocity is the rate of its position
+_NO_RATES = ("force", "load_cell", "pressure_a", "pressure_b", "supply_pressure", "reference")  # by their names
 _LOOKED_AT = 5000  # rows for correlations
 _PAIRED = 24  # columns that are paired
 _BEHAVIOUR = ("force", "load_cell", "pressure_a", "pressure_b", "command")
@@ -89,9 +90,15 @@ def _slopes(table: Table, usable: dict[str, Array], time: TimeGuess | None) -> d
     for first, values in columns.items():
         rate = np.gradient(values, seconds[good])
         for second, other in columns.items():
-            if first != second and np.std(rate) > 0.0 and np.corrcoef(rate, other)[0, 1] > _ALIKE:
+            if first != second and np.std(rate) > 0.0 and _is_rate(rate, other):
                 found[first, second] = float(rate @ other / (other @ other))
     return found
+
+
+def _is_rate(rate: Array, other: Array) -> bool:
+    """Whether `other` is proportional to `rate`: it goes with it, and is 0 where nothing moves, as no pressure is."""
+    together = float(rate @ other) / float(np.linalg.norm(rate) * np.linalg.norm(other))
+    return min(together, float(np.corrcoef(rate, other)[0, 1])) > _ALIKE
 
 
 def _add_pairs(scores: dict[tuple[str, str], int], slopes: dict[tuple[str, str], float]) -> None:
@@ -99,7 +106,8 @@ def _add_pairs(scores: dict[tuple[str, str], int], slopes: dict[tuple[str, str],
     rates = {second for _, second in slopes}
     for first, second in slopes:
         named = [scores[signal, first] >= NEEDED for signal in SIGNALS if signal not in ("position", "reference")]
-        if first not in rates and not any(named) and scores["reference", first] < NEEDED:
+        other = any(scores[signal, second] >= NEEDED for signal in _NO_RATES)
+        if first not in rates and not any(named) and not other and scores["reference", first] < NEEDED:
             scores["position", first] += 3
             scores["velocity", second] += 3
 

@@ -69,7 +69,7 @@ def points(signal: str, column: str) -> int:
     if SIGNALS[signal].dimensions == ("pressure",) and not gas:  # a letter or number alone says nothing
         return 0
     score = UNIT if found is not None and signal not in ("reference", "command", "supply_pressure") else 0
-    for pattern, worth in _WORDS[signal]:
+    for pattern, worth in _WORDS.get(signal) or ((rf"\b{signal.replace('_', ' ')}\b", 6),):
         if any(re.search(pattern, text) for text in texts):
             score += worth
     return score

@@ -11,10 +11,12 @@ import numpy as np
 
 import pneumo_ros
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import PLAIN
 from pneumo_ros.records import contract, write_recording
+from pneumo_ros.records.rates import laid
 from pneumo_ros.records.recording import Array
 from pneumo_ros.tables.clock import Clock, clock_of, ordered
-from pneumo_ros.tables.even import covered, grid_of, laid
+from pneumo_ros.tables.even import covered, grid_of
 from pneumo_ros.tables.fit import check_signals, check_values
 from pneumo_ros.tables.map_file import OTHERS, Map
 from pneumo_ros.tables.mapped import mapped
@@ -82,6 +84,7 @@ def write_bag(found: Imported, path: str | Path) -> None:
     given: dict[str, Any] = {name: values for name, values in found.signals.items() if name in fields}
     if found.command is not None:
         given["command_time"], given["command"] = found.command
+    given["further"] = {name: values for name, values in found.signals.items() if name in PLAIN}
     others = {f"{OTHERS}/{name}": found.signals[name] for name in found.plan.others}
     write_recording(
         path, time=found.time, start_ns=0, effort=found.signals.get("force"), others=others,

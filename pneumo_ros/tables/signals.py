@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from pneumo_ros.measured import MEASURED
 from pneumo_ros.records import contract
 
 _WAY, _SPEED, _LOAD = ("length", "angle"), ("velocity", "angular velocity"), ("force", "torque")
@@ -20,10 +21,9 @@ SIGNALS = {
     "position": Signal(_WAY, contract.JOINT_STATES, "position"),
     "velocity": Signal(_SPEED, contract.JOINT_STATES, "velocity"),
     "force": Signal(_LOAD, contract.JOINT_STATES, "driving force"),
-    "load_cell": Signal(_LOAD, contract.LOAD_CELL, "measured rod force"),
     "pressure_a": Signal(("pressure",), contract.PRESSURE_A, "pressure in chamber a"),
     "pressure_b": Signal(("pressure",), contract.PRESSURE_B, "pressure in chamber b"),
-    "supply_pressure": Signal(("pressure",), contract.SUPPLY_PRESSURE, "supply pressure"),
+    **{one.name: Signal(one.dimensions, one.topic, one.meaning.partition(",")[0]) for one in MEASURED},
     "command": Signal(_DRIVE, contract.COMMAND, "valve command"),
     "reference": Signal(_WAY, contract.REFERENCE, "wanted position"),
 }

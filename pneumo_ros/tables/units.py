@@ -22,7 +22,7 @@ class Unit(NamedTuple):
 SI = {
     "length": "m", "angle": "rad", "time": "s", "velocity": "m/s", "angular velocity": "rad/s", "pressure": "Pa",
     "force": "N", "torque": "N m", "voltage": "V", "current": "A", "ratio": "1", "temperature": "K",
-    "acceleration": "m/s2", "power": "W",
+    "acceleration": "m/s2", "power": "W", "mass flow": "kg/s",
 }  # fmt: skip
 
 UNITS = {
@@ -51,6 +51,7 @@ UNITS = {
     "K": Unit("temperature", 1.0), "degC": Unit("temperature", 1.0, 273.15),
     "degF": Unit("temperature", 5.0 / 9.0, 459.67 * 5.0 / 9.0),
     "m/s2": Unit("acceleration", 1.0), "W": Unit("power", 1.0),
+    "kg/s": Unit("mass flow", 1.0), "g/s": Unit("mass flow", 1e-3), "Nl/min": Unit("mass flow", 1.185e-3 / 60.0),  # ANR
 }  # fmt: skip
 # other spellings
 _ALIASES = {

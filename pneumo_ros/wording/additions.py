@@ -38,12 +38,20 @@ def additions(added: Sequence[Mapping[str, Any]]) -> tuple[AdditionWords, ...]:
     return tuple(_addition(one) for one in added)
 
 
+def added_table(result: Mapping[str, Any]) -> Table:
+    """The table of `diagnose` for the JSON of `add`, without the columns of a search."""
+    added = [one | {"holdout_error_before": one["error_before"], "holdout_error_after": one["error_after"]}
+             for one in result["added"]]  # fmt: skip
+    return additions_table(additions(added), "held-out error" if result["held_out"] else "error")
+
+
 def _addition(one: Mapping[str, Any]) -> AdditionWords:
     effect, rivals = str(one["effect"]), one.get("indistinguishable_from", ())
+    nats = one.get("score", {}).get("nats")  # null where the time for it was over
     said = f"These recordings cannot distinguish {effect} from {listed(rivals, 'or')}: each explains them as well."
     return AdditionWords(
         effect,
-        f"{one['score']['nats']:.0f}" if "score" in one else "-",
+        "-" if nats is None else f"{nats:.0f}",
         f"{times(one['holdout_error_before'])} -> {times(one['holdout_error_after'])}",
         tuple(parameter(effect, key, value) for key, value in one["parameters"].items()),
         said if rivals else "",

@@ -46,7 +46,7 @@ def _candidate(one: Mapping[str, Any], rivals: Mapping[str, Sequence[str]]) -> C
     return CandidateWords(
         effect=one["effect"],
         state=ADDED if one["added"] else RIVAL if one["rival_of"] else REFUSED,
-        nats=one["score"]["nats"],
+        nats=-math.inf if one["score"]["nats"] is None else one["score"]["nats"],  # null: no finite prediction
         gain=gain,
         equation="-" if gain < LITTLE else equation_words(one["equation"]),
         size=f"{number(one['size'])} x" if one["size"] else "0",

@@ -7,6 +7,7 @@ from typing import Any
 from pneumo_ros.compare.wording import EQUATIONS, amount, number, times
 from pneumo_ros.diagnose.outcome import ADEQUATE, UNKNOWN
 from pneumo_ros.wording.additions import AdditionWords, additions, with_rivals
+from pneumo_ros.wording.answers import AnswerWords, answers, at_the_machine
 from pneumo_ros.wording.candidates import REASONS, CandidateWords, candidates, foremost
 from pneumo_ros.wording.errors import StepWords, signals_table, steps
 from pneumo_ros.wording.moved import moved_sentence, moved_table
@@ -22,6 +23,8 @@ class DiagnosisWords:
     verdict: str  # as in the JSON
     badge: str  # the verdict in a word or two
     headline: str  # the verdict in a sentence, with the held-out error
+    answers: tuple[AnswerWords, ...]  # a line for each added effect
+    doing: tuple[str, ...]  # what to do at the machine
     notes: tuple[str, ...]
     equations: Table  # of the refitted model, before anything was added
     added: tuple[AdditionWords, ...]
@@ -38,8 +41,8 @@ class DiagnosisWords:
         """Every sentence and reason that terminal, report and workbench must each show."""
         reasons = (reason for one in foremost(self.candidates) for reason in one.reasons[:REASONS])
         every = (
-            self.headline, *self.notes, *(one.rivals for one in self.added), *reasons, *self.remains, self.moved,
-            self.experiment,
+            self.headline, *self.doing, *self.notes, *(one.rivals for one in self.added), *reasons, *self.remains,
+            self.moved, self.experiment,
         )  # fmt: skip
         return tuple(text for text in every if text)
 
@@ -51,6 +54,8 @@ def diagnosis(result: Mapping[str, Any]) -> DiagnosisWords:
         verdict=result["verdict"],
         badge=badge(result),
         headline=headline(result),
+        answers=answers(result),
+        doing=at_the_machine(result),
         notes=notes(result),
         equations=equations_table(result),
         added=additions(result["added"]),

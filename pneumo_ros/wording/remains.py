@@ -23,7 +23,7 @@ def remains(result: Mapping[str, Any]) -> tuple[str, ...]:
     words = [f"{sentence(leaves(result))}{small}.", follows(left)]
     if left["moved"]:
         words.append(machine_changed(left["moved"]))
-    return (*words, *([NEW_EFFECT] if left["material"] else []))
+    return (*words, *([NEW_EFFECT] if left["material"] and left["shape"] else []))
 
 
 def machine_changed(moved: Mapping[str, Any]) -> str:
@@ -50,6 +50,8 @@ def leaves(result: Mapping[str, Any]) -> str:
 def follows(left: Mapping[str, Any]) -> str:
     """The variable that the residual follows, and its share; `left` is `unexplained` in the JSON."""
     share, shape = left["explained_share"], left["shape"]
+    if not left["against"]:
+        return "These recordings hold too little of it to show which variable it follows."
     if not shape or share is None or share < FOLLOWS:
         most = f"more than {percent(share)} of it" if shape and share else "any of it"
         return f"None of position, velocity, voltage, pressures and time explains {most}."

@@ -9,32 +9,38 @@ from flask import Flask, Response, redirect, request
 from werkzeug.wrappers import Response as AnyResponse
 
 from pneumo_ros.workbench import (
+    commission_panel,
     diagnosis_panel,
     error_panel,
     failures_panel,
-    job_panel,
+    import_panel,
+    lead,
     live_panel,
     machine_panel,
     recordings_panel,
+    rig_panel,
     save_panel,
     signals_panel,
     sliders_panel,
 )  # fmt: skip
 from pneumo_ros.workbench.answers import answer_in_words
 from pneumo_ros.workbench.data import answer_plots
-from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
-from pneumo_ros.workbench.parts import Panels, revision
+from pneumo_ros.workbench.parts import Panels
 from pneumo_ros.workbench.safety import Guard
 from pneumo_ros.workbench.uploads import accept_uploads
 
+# key -> name and module of a panel; those of `lead.VIEWS` are opened from the bar, the others from the row of tabs
 TABS = {
+    "import": ("Import", import_panel),
+    "rig": ("Rig", rig_panel),
     "signals": ("Signals", signals_panel),
     "failures": ("Where it fails", failures_panel),
     "error": ("Error step by step", error_panel),
     "diagnosis": ("Diagnosis", diagnosis_panel),
     "sliders": ("Sliders", sliders_panel),
     "live": ("Live", live_panel),
+    "commission": ("Commission", commission_panel),
     "save": ("Save", save_panel),
 }
 _PLOTLY = "/report/plotly.min.js"
@@ -54,9 +60,8 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     )  # fmt: skip
     app.layout = _layout()
     panels = Panels(app, desks)
-    for module in (recordings_panel, machine_panel, job_panel, *(module for _, module in TABS.values())):
+    for module in (lead, recordings_panel, machine_panel, *(module for _, module in TABS.values())):
         module.register(panels)
-    panels.show([Output("machine", "children")], [revision()], _machine)
     app.clientside_callback(ClientsideFunction("bench", "tab"), Output("tab-shown", "data"), Input("tab", "value"))
     server.add_url_rule("/report/<name>", "report", _report_file)
     answer_in_words(server)
@@ -80,24 +85,18 @@ def _led_on(desks: Desks) -> AnyResponse | None:
 
 
 def _layout() -> html.Div:
-    options = [{"label": words, "value": key} for key, (words, _) in TABS.items()]
+    options = [{"label": words, "value": key} for key, (words, _) in TABS.items() if key not in lead.VIEWS]
     tabs = html.Fieldset(
         [html.Legend("View", className="hidden-words"), dcc.RadioItems(options, "signals", id="tab", className="tabs")]
     )
-    head = html.Header(
-        [html.H1(["pneumo workbench: ", html.Span(id="machine")]), html.P("", id="verdict", className="verdict")]
-    )
+    verdict = html.P("", id="verdict", className="verdict")
     side = html.Aside([recordings_panel.layout(), machine_panel.layout()], className="side")
-    main = html.Main([job_panel.layout(), tabs, *(module.layout() for _, module in TABS.values())])
+    main = html.Main([verdict, tabs, *(module.layout() for _, module in TABS.values())])
     return html.Div(
-        [dcc.Location(id="url", refresh=False), dcc.Store(id="tab-shown"), head,
-         html.Div([side, main], className="columns")],
+        [dcc.Location(id="url", refresh=False), dcc.Store(id="tab-shown"), lead.layout(),
+         html.Div([main, side], className="columns")],
         id="bench",
     )  # fmt: skip
-
-
-def _machine(desk: Desk, _revision: int) -> list[str]:
-    return [f"{desk.variant.machine.rpartition('/')[2]} ({desk.variant.label})"]
 
 
 def _report_file(name: str) -> Response:

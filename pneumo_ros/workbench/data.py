@@ -1,18 +1,21 @@
 """Data that the page's script requests, as JSON: charts during a zoom or a slide, the job, the live axis."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from flask import Flask, Response, jsonify, request
 
 from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.workbench.bags import Bag
+from pneumo_ros.workbench.columns import columns
+from pneumo_ros.workbench.curves import Rig
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
 from pneumo_ros.workbench.job_panel import status_of
 from pneumo_ros.workbench.live_panel import live_of
 from pneumo_ros.workbench.response_chart import response_chart
-from pneumo_ros.workbench.signals import View, readings, signals_chart
+from pneumo_ros.workbench.signals import Source, View, readings, signals_chart
 from pneumo_ros.workbench.thin import Span
 from pneumo_ros.workbench.variant import Variant
 
@@ -42,11 +45,25 @@ def answer_plots(server: Flask, desks: Desks) -> None:
 
 
 def signals_of(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The chart of a run, None without recordings. `asked` has run, span, shown, regime, other and marks."""
+    """The chart of a run, None without recordings. `asked` has run, also, span, shown, over, regime, other, marks."""
     bag = desk.shelf.bag(asked.get("run"))
     if bag is None:
         return None
-    return signals_chart(bag, desk.shelf.recording(bag), view_of(asked), variants_of(desk, asked.get("other")))
+    view = view_of(asked)
+    wanted = {*view.shown, view.over}
+    chosen = (desk.shelf.bag(str(name)) for name in asked.get("also") or ())
+    others = [source_of(desk, one, wanted) for one in chosen if one is not None and one.name != bag.name]
+    return signals_chart(source_of(desk, bag, wanted), view, variants_of(desk, asked.get("other")), others)
+
+
+def source_of(desk: Desk, bag: Bag, wanted: Collection[str]) -> Source:
+    """A recording to plot; topics are read only where one of their columns, which begin with a slash, is wanted."""
+    recording, values = desk.shelf.recording(bag), desk.model().parameters
+    found = columns(desk.shelf.path(bag), recording) if any(name.startswith("/") for name in wanted) else {}
+    atmosphere = values.get("air.atmospheric_pressure", desk.shelf.atmosphere)
+    return Source(
+        bag, recording, found, Rig(values.get("piston.area_a", 0.0), values.get("piston.area_b", 0.0), atmosphere)
+    )
 
 
 def cursors_of(desk: Desk, asked: Mapping[str, Any]) -> list[tuple[str, ...]]:
@@ -60,7 +77,8 @@ def cursors_of(desk: Desk, asked: Mapping[str, Any]) -> list[tuple[str, ...]]:
 def view_of(asked: Mapping[str, Any]) -> View:
     """The view that is requested; ValueError for texts that are not numbers."""
     marks = {str(name): number(x) for name, x in (asked.get("marks") or {}).items()}
-    return View([str(name) for name in asked.get("shown") or ()], span_of(asked), str(asked.get("regime") or ""), marks)
+    return View([str(name) for name in asked.get("shown") or ()], span_of(asked), str(asked.get("regime") or ""), marks,
+                str(asked.get("over") or ""))  # fmt: skip
 
 
 def span_of(asked: Mapping[str, Any]) -> Span | None:

@@ -4,13 +4,26 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.files import write_whole
 from pneumo_ros.plant import Model, save_model
 from pneumo_ros.reading.read import ATMOSPHERE, ReadOptions
 from pneumo_ros.workbench.job import Job
 from pneumo_ros.workbench.live import Live
-from pneumo_ros.workbench.plans import Bench, Plan, campaign_plan, compare_plan, diagnose_plan, refit_plan
+from pneumo_ros.workbench.mapping import Mapped, edited, free_name, map_text, mapped
+from pneumo_ros.workbench.plans import (
+    IMPORTING,
+    Bench,
+    Plan,
+    campaign_plan,
+    compare_plan,
+    diagnose_plan,
+    guess_plan,
+    import_plan,
+    refit_plan,
+)
 from pneumo_ros.workbench.shelf import Shelf
 from pneumo_ros.workbench.variant import Compared, Variant, model_of
 
@@ -23,6 +36,7 @@ class Given:
     how: ReadOptions = field(default_factory=ReadOptions)
     machine: str = "axis"
     effects: tuple[str, ...] = ()
+    rig: str = ""  # the rig file, if one was given
 
 
 class Desk:
@@ -42,6 +56,9 @@ class Desk:
         self._jobs = 0
         atmosphere = self.model().parameters.get("air.atmospheric_pressure", ATMOSPHERE)
         self.shelf = Shelf(folder, given.how, atmosphere, self.changed)
+        self.mapping: Mapped | None = None  # the table that is being imported
+        self.maps: tuple[str, ...] = ()  # their files
+        self.imported: tuple[str, ...] = ()  # command lines that made recordings of tables
         self.opened: tuple[int, str] = (0, "")  # number of the last job that showed its result, and the tab
         self.shelf.take(given.bags)
 
@@ -93,7 +110,31 @@ class Desk:
             self.choose(number)
 
     def _machine_name(self, number: int) -> str:
-        return f"{Path(self.given.machine).stem}_{number}.yaml"
+        return f"{Path(self.lineage()[0].machine).stem}_{number}.yaml"
+
+    def take_machine(self, machine: str, label: str) -> None:
+        """Begin again with another machine file, shipped or relative to the folder; raises what `load_model` raises."""
+        model_of(machine, self.folder, self.given.effects)
+        with self.lock:
+            number = len(self.variants)
+            self.variants.append(Variant(number, machine, label))
+            self.choose(number)
+
+    # --- tables -----------------------------------------------------------------------------------------------------
+
+    def guess(self, table: str) -> None:
+        """Start guessing what the columns of a table are; the page then shows a form."""
+        self._start(lambda number: guess_plan(table, number))
+
+    def import_table(self, timing: Mapping[str, Any], rows: Mapping[str, Mapping[str, Any]], motion: str) -> None:
+        """Start importing the table with the map that was edited; UsageError for a map that lacks something."""
+        assert self.mapping is not None
+        table, content = self.mapping.table, edited(self.mapping, timing, rows, motion)
+        with self.lock:
+            number = self._jobs + 1
+            name = free_name(Path(table).name.partition(".")[0], self.folder)
+            write_whole(self.folder / f"map_{number}.yaml", map_text(content))
+            self._start(lambda _: import_plan(table, f"map_{number}.yaml", name))
 
     # --- work -------------------------------------------------------------------------------------------------------
 
@@ -123,9 +164,12 @@ class Desk:
         if self.job is not None:
             self.job.cancel()
 
-    def campaign(self, namespace: str) -> None:
-        """Start driving a live plant with constant voltages; the recordings are added to the desk."""
-        self._start(lambda number: campaign_plan(self._bench(), namespace, f"campaign_{number}"))
+    def campaign(self, namespace: str, closed: str = "") -> None:
+        """Start driving a live plant with constant voltages; the recordings are added to the desk.
+
+        `closed`: the signal that closes its valve, such as 5V; empty where the machine or rig file says it.
+        """
+        self._start(lambda number: campaign_plan(self._bench(), namespace, f"campaign_{number}", closed))
 
     def close(self) -> None:
         """End the running processes and wait for them."""
@@ -137,7 +181,8 @@ class Desk:
 
     def _bench(self) -> Bench:
         effects = tuple(str(Path(path).resolve()) for path in self.given.effects)
-        return Bench(self.shelf.bags, self.given.how, self.variant.machine, effects)
+        compared, rig = self.variant.compared is not None, self.given.rig
+        return Bench(self.shelf.bags, self.shelf.how, self.variant.machine, effects, compared, rig)
 
     def _start(self, make: Callable[[int], Plan]) -> None:
         with self.lock:
@@ -150,12 +195,23 @@ class Desk:
 
     def _done(self, plan: Plan, before: Variant) -> None:
         """Keep the files that the verbs of a plan wrote."""
-        if plan.recordings:
-            self.shelf.take([self.folder / plan.recordings])
+        if plan.guess:
+            self.mapping = mapped(self.folder, plan.guess, plan.made + ".yaml", plan.made + ".json")
+            self.opened = (self._jobs, "import")
+            self.changed()
             return
-        stem = self.folder / plan.compared
-        compared = Compared(plan.bags, *(stem.with_suffix(kind) for kind in (".json", ".npz", ".html")))
+        if plan.recordings:
+            if plan.title == IMPORTING:
+                self.imported, self.maps = (*self.imported, *plan.shown()), (*self.maps, plan.map)
+            self.shelf.take([self.folder / plan.recordings])
+            self.opened = (self._jobs, "signals")
+            self.changed()
+            return
+        compared = self._compared(plan, plan.compared)
         with self.lock:
+            if plan.before:
+                made_from = self._compared(plan, plan.before)
+                self.variants[before.number] = replace(self.variants[before.number], compared=made_from)
             if not plan.machine:
                 self.variants[before.number] = replace(self.variants[before.number], compared=compared)
                 self.opened = (self._jobs, "failures")
@@ -168,6 +224,10 @@ class Desk:
                 self.opened = (self._jobs, "diagnosis" if plan.title == "Diagnosing" else "error")
                 self.choose(number)
             self.changed()
+
+    def _compared(self, plan: Plan, name: str) -> Compared:
+        stem = self.folder / name
+        return Compared(plan.bags, *(stem.with_suffix(kind) for kind in (".json", ".npz", ".html")))
 
     def say(self, problem: PneumoError | str) -> None:
         """A sentence for the page; the next change removes it."""

@@ -45,6 +45,7 @@ def sections(result: dict[str, Any]) -> list[Section]:
     from pneumo_ros.report.answer import addition_section, badge, notes
     from pneumo_ros.report.candidates import candidates_section
     from pneumo_ros.report.remains import remains_text
+    from pneumo_ros.report.summary import summary_text
     from pneumo_ros.wording.diagnosis import diagnosis
 
     said, left = diagnosis(result), result["unexplained"]
@@ -53,7 +54,7 @@ def sections(result: dict[str, Any]) -> list[Section]:
     errors = worded(steps_table(said.steps, said.horizon), "Held-out error step by step") + worded(said.signals)
     charts = (_shape(left),) if left and left["shape"] else ()
     return [
-        Section("diagnosis-answer", "Diagnosis", Html(verdict + notes(said)),
+        Section("diagnosis-answer", "Diagnosis", Html(verdict + summary_text(said) + notes(said)),
                 parts=tuple(addition_section(one) for one in said.added)),
         Section("diagnosis-error", "Held-out error", Html(errors)),
         candidates_section(said.candidates),

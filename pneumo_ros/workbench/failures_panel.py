@@ -8,6 +8,7 @@ from pneumo_ros.compare.findings import verdict
 from pneumo_ros.report.chart import Section
 from pneumo_ros.report.markup import tag
 from pneumo_ros.workbench.desk import Desk
+from pneumo_ros.workbench.error_panel import judged_by
 from pneumo_ros.workbench.parts import Panels, revision
 from pneumo_ros.workbench.shown import content
 
@@ -45,6 +46,23 @@ def render(desk: Desk, _revision: int) -> tuple[Any, str, str]:
         )
     result = compared.result
     sections = [made(result) for made in (overview_section, findings_section, equations_section, regimes_section)]
-    good = not any(one["explained_by_noise"] is False for one in result["equations"].values())
     stamp = str(compared.json)
-    return content("failures-content", sections, stamp), verdict(result), f"verdict {'good' if good else 'bad'}"
+    return content("failures-content", sections, stamp), *banner(desk, result)
+
+
+def banner(desk: Desk, result: dict[str, Any]) -> tuple[str, str]:
+    """The verdict above all panels, with the one headline number, and its tone.
+
+    That of the diagnosis that made the machine, else that of `compare` with the error on the held-out recordings.
+    """
+    from pneumo_ros.report.answer import SIGNS
+    from pneumo_ros.wording.diagnosis import headline
+
+    made = desk.variant.made_by()
+    if "candidates" in made:
+        return headline(made), f"verdict {SIGNS[made['verdict']][1]}"
+    compared, (bags, what) = desk.variant.compared, judged_by(desk)
+    assert compared is not None
+    runs = [run for name, run in zip(compared.bags, result["runs"], strict=True) if name in bags]
+    good = not any(one["explained_by_noise"] is False for one in result["equations"].values())
+    return verdict(result, runs, f" on recordings {what}"), f"verdict {'good' if good else 'bad'}"

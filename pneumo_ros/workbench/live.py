@@ -14,6 +14,7 @@ from typing import Any
 
 from pneumo_ros.environment import require_ros
 from pneumo_ros.errors import UsageError
+from pneumo_ros.workbench.twin import WINDOW, Twin
 
 KEPT = 20.0  # s that are shown
 _RATE = 100  # values a second, at most
@@ -35,6 +36,7 @@ class Live:
         self.answer = ""
         self.recording: Path | None = None
         self._recorder: subprocess.Popen[bytes] | None = None
+        self.twin = Twin(round(KEPT / WINDOW))
         self._began, self._lock = time.time(), threading.Lock()
         self._watcher = subprocess.Popen(
             [sys.executable, "-m", "pneumo_ros.ros.watcher", *self._arguments()], stdin=subprocess.PIPE,

@@ -15,17 +15,34 @@ from pneumo_ros.workbench.thin import packed
 
 # panel -> its series: name, colour, factor
 _PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
-    "position [mm]": (("position", "model", 1e3), ("setpoint", "second", 1e3), ("reference", "third", 1e3)),
+    "position [mm]": (
+        ("position", "measured", 1e3),
+        ("setpoint", "second", 1e3),
+        ("reference", "third", 1e3),
+        ("predicted_position", "model", 1e3),
+    ),
     "velocity [m/s]": (("velocity", "model", 1.0),),
-    "pressure [kPa]": (("pressure_a", "model", 1e-3), ("pressure_b", "second", 1e-3)),
+    "pressure [kPa]": (
+        ("pressure_a", "measured", 1e-3),
+        ("pressure_b", "noise", 1e-3),
+        ("predicted_pressure_a", "model", 1e-3),
+        ("predicted_pressure_b", "first", 1e-3),
+    ),
     "voltage [V]": (("voltage", "third", 1.0),),
 }
+_TEXT = (
+    "A simulator or a rig that runs on this machine's ROS domain. Beside it, the current machine predicts every second "
+    "from the measured voltage."
+)
 _RESTS = 1e-3  # m/s; a slower piston sticks
 
 
 def layout() -> html.Div:
     """Controls, plot and status."""
     place = html.Label(["Namespace ", dcc.Input(id="namespace", value="", type="text", size="14")])
+    closed = html.Label(
+        ["Valve closes at ", dcc.Input(id="campaign-closed", value="", type="text", size="6", placeholder="0V or 5V")]
+    )
     setting = [
         html.Label(["Node ", dcc.Input(id="set-node", value="simulator", type="text", size="12")]),
         html.Label(["Parameter ", dcc.Input(id="set-name", value="lugre_friction.coulomb_friction", type="text")]),
@@ -35,8 +52,8 @@ def layout() -> html.Div:
     ]
     return html.Div(
         [
-            html.P("A simulator or a rig that runs on this machine's ROS domain.", className="soft"),
-            html.Div([place, button("Watch", "watch", main=True), button("Record", "record"),
+            html.P(_TEXT, className="soft"),
+            html.Div([place, button("Watch", "watch", main=True), button("Record", "record"), closed,
                       button("Constant-voltage campaign", "campaign")], className="row"),
             html.Div(setting, className="row"),
             html.P("", id="live-says", role="status"),
@@ -52,7 +69,9 @@ def register(panels: Panels) -> None:
     """Callbacks of this panel."""
     panels.act([Input("watch", "n_clicks"), State("namespace", "value")], _watch)
     panels.act([Input("record", "n_clicks")], _record)
-    panels.act([Input("campaign", "n_clicks"), State("namespace", "value")], _campaign)
+    panels.act(
+        [Input("campaign", "n_clicks"), State("namespace", "value"), State("campaign-closed", "value")], _campaign
+    )
     panels.act([Input("set", "n_clicks"), State("set-node", "value"), State("set-name", "value"),
                 State("set-value", "value")], _set)  # fmt: skip
     panels.show([Output("watch", "children"), Output("record", "children"), Output("record", "disabled"),
@@ -94,9 +113,9 @@ def _record(desk: Desk, clicks: int | None) -> None:
     desk.changed()
 
 
-def _campaign(desk: Desk, clicks: int | None, namespace: str | None) -> None:
+def _campaign(desk: Desk, clicks: int | None, namespace: str | None, closed: str | None) -> None:
     if asked(clicks):
-        desk.campaign((namespace or "").strip().strip("/"))
+        desk.campaign((namespace or "").strip().strip("/"), (closed or "").strip())
 
 
 def _set(desk: Desk, clicks: int | None, node: str, name: str, value: str) -> None:
@@ -124,9 +143,18 @@ def live_of(desk: Desk, _asked: Mapping[str, Any]) -> dict[str, Any]:
     if live is None:
         return {"chart": None, "says": "", "status": "", "answer": ""}
     curves = live.curves()
-    says = state(curves) if curves else "No messages yet: does an axis run in this namespace?"
-    return {"chart": live_chart(curves) if curves else None, "says": says, "status": _status(live),
+    says = "No messages yet: does an axis run in this namespace?"
+    if curves:
+        live.twin.look(curves, desk.model)
+        says = f"{state(curves)} {live.twin.says()}"
+    return {"chart": live_chart(curves | _twin(live)) if curves else None, "says": says, "status": _status(live),
             "answer": live.answer}  # fmt: skip
+
+
+def _twin(live: Live) -> dict[str, tuple[list[float], list[float]]]:
+    """The twin's predictions as series of their own."""
+    found = {f"predicted_{name}": live.twin.curve(name) for name in ("position", "pressure_a", "pressure_b")}
+    return {name: one for name, one in found.items() if one is not None}
 
 
 def state(curves: dict[str, tuple[list[float], list[float]]]) -> str:

@@ -1,6 +1,5 @@
 """The machine: its variants, the actions on it, and its effects as check boxes."""
 
-from functools import partial
 from itertools import groupby
 from typing import Any
 
@@ -13,26 +12,19 @@ from pneumo_ros.plant.catalogue import body, catalogue, helpers, room, summary
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.workbench.desk import Desk
-from pneumo_ros.workbench.parts import Panels, asked, button, choice, revision
-
-ACTIONS = {
-    "compare": ("Compare", "the machine with all recordings: where does it fail?"),
-    "refit": ("Refit", "with the effects that are ticked, to the recordings to fit"),
-    "diagnose": ("Diagnose", "look for what is missing, add it and refit"),
-    "undo": ("Undo", "back to the machine that this one was made from"),
-}
+from pneumo_ros.workbench.parts import Panels, choice, revision
 
 
 def layout() -> html.Section:
-    """Buttons, variants and effects."""
-    buttons = [button(name, key, main=key == "refit", title=words) for key, (name, words) in ACTIONS.items()]
+    """Variants and effects."""
     return html.Section(
         [
             html.H2("Machine", id="machine-title"),
-            html.Div(buttons, className="actions"),
-            html.P("", id="message", className="message", role="alert", hidden=True),
             html.Div(id="variants"),
             html.H3("Effects"),
+            html.Label(
+                ["Search ", dcc.Input(id="search", type="search", value="", placeholder="leak, valve, F_c ...")]
+            ),
             dcc.Store(id="effects-of"),
             html.Div(id="effects", className="effects", role="group", **{"aria-label": "Effects of the machine"}),
         ],
@@ -46,10 +38,6 @@ def register(panels: Panels) -> None:
     panels.show([Output("variants", "children")], [revision()], _variants)
     panels.show([Output("effects", "children"), Output("effects-of", "data")],
                 [revision(), State("effects-of", "data")], render)  # fmt: skip
-    panels.show([Output("message", "children"), Output("message", "hidden")], [revision()], _message)
-    panels.show([Output(key, "disabled") for key in ACTIONS], [revision()], _disabled)
-    for key in ACTIONS:
-        panels.act([Input(key, "n_clicks")], partial(_press, key))
     panels.act([Input({"type": "variant", "index": ALL}, "value")], _choose)
     panels.act([Input({"type": "effect", "name": ALL}, "value")], _tick)
 
@@ -90,7 +78,10 @@ def _effect(desk: Desk, model: Model, effect: type[Effect]) -> html.Div:
         [html.Summary(["Equation", html.Span(f" and parameters of {words}", className="hidden-words")]), *more]
     )
     sign = html.P(effect.signature, className="sign") if effect.signature else None
-    return html.Div([box, sign, inner], className=f"effect{' extra' * (name not in model.effects)}")
+    found = " ".join((words, effect.signature, effect.remedy, effect.__doc__ or "", room(effect), *(
+        one.meaning for one in effect.parameters.values()))).lower()  # fmt: skip
+    return html.Div([box, sign, inner], className=f"effect{' extra' * (name not in model.effects)}",
+                    **{"data-words": found})  # fmt: skip
 
 
 def _parameters(model: Model, effect: type[Effect]) -> Any:
@@ -108,20 +99,6 @@ def _parameters(model: Model, effect: type[Effect]) -> Any:
     return html.Div(html.Table([head, html.Tbody(rows)]), className="wide")
 
 
-def _press(key: str, desk: Desk, clicks: int | None) -> None:
-    if asked(clicks):
-        getattr(desk, key)()
-
-
-def _message(desk: Desk, _revision: int) -> tuple[str, bool]:
-    return desk.message, not desk.message
-
-
-def _disabled(desk: Desk, _revision: int) -> list[bool]:
-    busy = desk.job is not None and desk.job.running
-    return [busy, busy, busy, busy or desk.variant.parent is None]
-
-
 def _choose(desk: Desk, values: list[int | None]) -> None:
     if values and values[0] is not None and values[0] != desk.current:
         desk.choose(values[0])
@@ -129,5 +106,6 @@ def _choose(desk: Desk, values: list[int | None]) -> None:
 
 def _tick(desk: Desk, values: list[list[str]]) -> None:
     ticked = frozenset(name for one in values for name in one)
-    if values:
+    if values and ticked != desk.ticked:
         desk.ticked = ticked
+        desk.changed()  # the next step depends on it

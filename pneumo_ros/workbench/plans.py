@@ -9,6 +9,7 @@ from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.workbench.bags import Bag, reading_options
 from pneumo_ros.workbench.job import Line
 
+IMPORTING = "Importing"
 _EFFECT_LINE, _COMPARE_LINE, _DIAGNOSE_LINE = 6.0, 1.0, 12.0  # shares of a job's time
 
 
@@ -20,6 +21,8 @@ class Bench:
     how: ReadOptions
     machine: str
     effects: tuple[str, ...]
+    compared: bool = True  # whether the machine was compared with the recordings
+    rig: str = ""  # its rig file, with which it moves
 
     def paths(self, *roles: str) -> list[str]:
         """Paths of the usable recordings in these roles."""
@@ -48,10 +51,21 @@ class Plan:
     machine: str = ""
     recordings: str = ""  # folder of new recordings
     made: str = ""  # stem of JSON and report of the verb that makes the machine
+    before: str = ""  # stem of the comparison of the machine that this one is made from, if that lacked one
+    map: str = ""  # of the table that is imported
+    guess: str = ""  # the table whose columns are guessed
 
     def shown(self) -> tuple[str, ...]:
         """The command lines, to be typed."""
         return tuple(shlex.join(["pneumo", *line.arguments]) for line in self.lines)
+
+
+def live_options(how: ReadOptions, rig: str) -> list[str]:
+    """How the rig is wired, for verbs that move it: its file, or the words with which its recordings are read."""
+    if rig:
+        return ["--rig", rig]
+    given = {"--joint": how.joint, "--read-as": ",".join(how.words)}
+    return [word for key, value in given.items() if value for word in (key, value)]
 
 
 def compare_plan(bench: Bench, number: int) -> Plan:
@@ -61,7 +75,10 @@ def compare_plan(bench: Bench, number: int) -> Plan:
 
 
 def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) -> Plan:
-    """Add `effects` and refit, or only refit without any; write `machine`, and compare it."""
+    """Add `effects` and refit, or only refit without any; write `machine`, and compare it.
+
+    The machine before is compared, too, if it was not: to see before and after in one plot.
+    """
     fit, held, made = bench.paths("fit"), bench.paths("hold"), f"made_{number}"
     if not fit:
         raise UsageError("no recording is marked 'fit'; mark one, then press Refit again")
@@ -75,8 +92,9 @@ def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) 
         words += ["--report", f"{made}.html"]
         label = "refitted"
     line, bags = _compare(bench, machine, number)
-    lines = (Line(tuple(words), _EFFECT_LINE), line)
-    return Plan("Refitting", label, lines, bags, f"compared_{number}", machine=machine, made=made)
+    first, before = _before(bench, number)
+    lines = (*first, Line(tuple(words), _EFFECT_LINE), line)
+    return Plan("Refitting", label, lines, bags, f"compared_{number}", machine=machine, made=made, before=before)
 
 
 def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
@@ -88,20 +106,44 @@ def diagnose_plan(bench: Bench, machine: str, number: int) -> Plan:
     words = ["diagnose", *fit, "--holdout", *held, *bench.options(bench.machine), "--out", machine]
     words += ["--json", f"{made}.json", "--report", f"{made}.html"]
     line, bags = _compare(bench, machine, number)
-    lines = (Line(tuple(words), _DIAGNOSE_LINE), line)
-    return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine=machine, made=made)
+    first, before = _before(bench, number)
+    lines = (*first, Line(tuple(words), _DIAGNOSE_LINE), line)
+    return Plan("Diagnosing", "diagnosed", lines, bags, f"compared_{number}", machine, made=made, before=before)
 
 
-def campaign_plan(bench: Bench, namespace: str, folder: str) -> Plan:
-    """Drive a live plant with constant voltages, and record each run into `folder`."""
+def guess_plan(table: str, number: int) -> Plan:
+    """Guess what the columns of `table` are, as the first map of it."""
+    stem = f"guess_{number}"
+    words = ["import", table, "--guess", "--map", f"{stem}.yaml", "--json", f"{stem}.json"]
+    return Plan("Looking at the columns", "", (Line(tuple(words)),), (), "", guess=table, made=stem)
+
+
+def import_plan(table: str, map_file: str, bag: str) -> Plan:
+    """Make the recording `bag` of `table` by its map."""
+    return Plan(
+        IMPORTING, "", (Line(("import", table, "--map", map_file, "--out", bag)),), (), "", recordings=bag, map=map_file
+    )
+
+
+def campaign_plan(bench: Bench, namespace: str, folder: str, closed: str = "") -> Plan:
+    """Drive a live plant with constant voltages, and record each run into `folder`; `closed`: as --closed."""
     effects = [word for path in bench.effects for word in ("--effects", path)]
     place = ["--namespace", namespace] if namespace else []
     words = ["experiment", "constant-voltage", *place, "--out", folder, "--model", bench.machine, *effects]
+    words += [*live_options(bench.how, bench.rig), *(["--closed", closed] if closed else [])]
     return Plan("Constant voltages", "", (Line(tuple(words)),), (), "", recordings=folder)
 
 
-def _compare(bench: Bench, machine: str, number: int) -> tuple[Line, tuple[str, ...]]:
-    used, stem = bench.used(), f"compared_{number}"
+def _before(bench: Bench, number: int) -> tuple[tuple[Line, ...], str]:
+    """The comparison of the machine before, and the stem of its files; none if it was compared."""
+    if bench.compared:
+        return (), ""
+    stem = f"before_{number}"
+    return (_compare(bench, bench.machine, number, stem)[0],), stem
+
+
+def _compare(bench: Bench, machine: str, number: int, stem: str = "") -> tuple[Line, tuple[str, ...]]:
+    used, stem = bench.used(), stem or f"compared_{number}"
     if not used:
         raise UsageError("there is no recording to compare with; drop one on the page")
     words = ["compare", *(bag.path for bag in used), *bench.options(machine)]

@@ -8,6 +8,7 @@ from dash.exceptions import PreventUpdate
 from pneumo_ros.workbench.bags import ROLES, Bag
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.parts import Panels, asked, choice, revision
+from pneumo_ros.workbench.uploads import MACHINES, TABLES
 
 
 def layout() -> html.Section:
@@ -71,7 +72,8 @@ def _row(desk: Desk, k: int, bag: Bag, shown: bool) -> html.Div:
 def _uploaded(desk: Desk, when: int | None) -> None:
     folder = desk.folder / "uploads"
     if when and folder.is_dir():
-        desk.shelf.take(sorted(path for path in folder.iterdir() if not path.name.startswith(".")))
+        own = (TABLES, MACHINES)
+        desk.shelf.take(sorted(p for p in folder.iterdir() if not p.name.startswith(".") and p.name not in own))
 
 
 def _set_roles(desk: Desk, values: list[str | None], names: list[dict[str, Any]]) -> None:

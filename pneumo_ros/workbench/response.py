@@ -49,7 +49,7 @@ def respond(model: Model, part: Stretch) -> dict[str, Array]:
         held[begin : begin + part.samples * PARTS], part.start, sample_time=run.sample_time, parts=PARTS
     )
     read = sense(model, states[None], None, held, np.array([begin]), sample_time=run.sample_time, parts=PARTS)
-    return {name: read[0, :, i] for i, name in enumerate(measured_columns(model)) if name in run.signals}
+    return {name: read[0, :, i] for i, name in enumerate(measured_columns(model)) if name in run.judged}
 
 
 def slid(value: float, stop: int, known: Parameter) -> float:

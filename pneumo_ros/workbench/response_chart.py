@@ -34,13 +34,14 @@ def response_chart(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | Non
     bag = desk.shelf.bag(asked.get("run"))
     if bag is None:
         return None
+    from pneumo_ros.runs.inputs import measuring
     from pneumo_ros.workbench.response import respond
 
     base = desk.model()
     model = base.with_parameters(values_of(base, asked.get("stops") or {}))
     span = asked.get("span") or (0.0, 1e9)
     part, before = _begun(desk, desk.chosen, bag.name, (float(span[0]), float(span[1])))
-    after, panels = respond(model, part), []
+    after, panels = respond(measuring(model, [part.run]), part), []
     inside = slice(part.first + 1, part.first + part.samples + 1)
     for signal, values in after.items():
         words, unit, factor = SIGNALS[signal]
@@ -61,11 +62,13 @@ def _trace(role: str, time: Any, values: Any) -> dict[str, Any]:
 @lru_cache(8)
 def _begun(desk: Desk, _chosen: int, name: str, span: Span) -> Any:
     """The stretch with its start, and the response of the current machine."""
-    from pneumo_ros.reading.read import checked_run
+    from pneumo_ros.reading.read import run_of
+    from pneumo_ros.runs.inputs import measuring
     from pneumo_ros.workbench.response import respond, stretch
 
     bag = desk.shelf.bag(name)
     assert bag is not None
-    model = desk.model()
-    part = stretch(model, checked_run(desk.shelf.recording(bag), model)[0], *span)
+    run, _ = run_of(desk.shelf.recording(bag), desk.model(), mechanics=True)
+    model = measuring(desk.model(), [run])  # with what the recording measured in place of constants
+    part = stretch(model, run, *span)
     return part, respond(model, part)

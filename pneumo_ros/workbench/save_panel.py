@@ -39,6 +39,8 @@ def saved_files(desk: Desk) -> dict[str, tuple[str, Path]]:
     stem = Path(variant.machine).stem
     if variant.report and variant.report.is_file():
         found[f"{stem}_report.html"] = ("report of what made it", variant.report)
+    for name in desk.maps:
+        found[name] = ("map of a table", desk.folder / name)
     if variant.compared:
         found[f"{stem}_comparison.html"] = ("report of the comparison", variant.compared.report)
         found[f"{stem}_comparison.json"] = ("comparison as JSON", variant.compared.json)
@@ -51,7 +53,10 @@ def render(desk: Desk, _revision: int) -> tuple[Any, str]:
         html.A(f"Save the {what}: {name}", href=f"/files/{desk.folder.name}/{name}", download=name, className="button")
         for name, (what, _) in saved_files(desk).items()
     ]
-    lines = commands(desk.lineage()) or f"# {desk.variant.machine} as it was given"
+    lines = (
+        "\n".join([*desk.imported, *filter(None, [commands(desk.lineage())])])
+        or f"# {desk.variant.machine} as it was given"
+    )
     return links or html.P("There are no files yet: press Compare.", className="soft"), lines
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from pneumo_ros.errors import UsageError
 from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.records import Recording
+from pneumo_ros.records.corrections import parse_words
 from pneumo_ros.workbench.bags import ROLES, Bag, Role, found_bags, problem_of, read
 
 
@@ -30,6 +31,14 @@ class Shelf:
         with self._lock:
             taken = {bag.name for bag in self.bags}
             self.bags += tuple(replace(b, name=f"{b.name} ({b.path})") if b.name in taken else b for b in seen)
+            self._changed()
+
+    def read_as(self, text: str) -> None:
+        """Read all recordings again as the words of --read-as say; UsageError for unknown words."""
+        how = replace(self.how, words=parse_words(text))
+        seen = tuple(replace(b, problem=problem_of(self.path(b), how, self.atmosphere)) for b in self.bags)
+        with self._lock:
+            self.how, self.bags = how, seen
             self._changed()
 
     def path(self, bag: Bag) -> Path:

@@ -9,11 +9,14 @@ from flask import Flask, Response, request
 from werkzeug.exceptions import RequestEntityTooLarge
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.tables.reading import READERS
 
 LARGEST = 2 * 1024**3  # bytes of one file
 _MOST = 8 * 1024**3  # bytes of all files of a desk
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+ -]{0,120}")
 KINDS = (".mcap", ".db3", ".yaml")  # files of recordings
+TABLES, MACHINES = "tables_to_import", "machine_files"  # folders of uploads that hold no recordings
+TABLE_KINDS = tuple(kind + packed for kind in READERS for packed in ("", ".gz"))
 _CHUNK = 1 << 20
 
 
@@ -27,8 +30,10 @@ def place(folder: Path, given: str) -> Path:
     kept = parts[-2:]  # a recording is a folder of files; folders above it are dropped
     if not kept or any(not _NAME.fullmatch(part) or part.endswith(".") for part in kept):
         raise UsageError(f"'{given[:80]}' is no plain file name; use letters, digits, and . _ + -")
-    if Path(kept[-1]).suffix not in KINDS:
-        raise UsageError(f"{kept[-1]} is no part of a recording; these are: {', '.join(KINDS)}")
+    tables = kept[0] == TABLES and len(kept) == 2
+    if not kept[-1].lower().endswith(tuple(TABLE_KINDS) if tables else KINDS):
+        what, allowed = ("table that is read", TABLE_KINDS) if tables else ("part of a recording", KINDS)
+        raise UsageError(f"{kept[-1]} is no {what}; these are: {', '.join(allowed)}")
     target = folder.joinpath(*kept).resolve()
     if not target.is_relative_to(folder.resolve()):
         raise UsageError(f"'{given[:80]}' lies outside the folder for recordings")

@@ -1,8 +1,7 @@
 """Variants of a machine: its parent, the verb that made it, and its comparison with the recordings."""
 
 import json
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.compare import typical
 from pneumo_ros.plant import Model, load_model
 
 
@@ -74,18 +74,12 @@ def model_of(machine: str, folder: Path, effects: Sequence[str]) -> Model:
     return load_model(str(path) if path.is_file() else machine, effects_files=tuple(effects))
 
 
-def typical_error(compared: Compared, bags: Sequence[str]) -> float | None:
-    """Error of a typical window over `bags` in noise floors, as in `pneumo diagnose`; None without them.
-
-    The geometric mean over all windows, and the root mean square over the signals.
-    """
+def runs_of(compared: Compared, bags: Sequence[str]) -> list[Mapping[str, Any]]:
+    """The runs of `bags` in the result of a comparison."""
     runs = zip(compared.bags, compared.result["runs"], strict=True)
-    found = [run for name, run in runs if name in bags and run["windows"]]
-    if not found:
-        return None
-    total = sum(run["windows"] for run in found)
-    squares = []
-    for signal in found[0]["error"]:
-        logs = (run["windows"] * math.log(run["error"][signal]["typical_ratio_to_noise"]) for run in found)
-        squares.append(math.exp(sum(logs) / total) ** 2)
-    return math.sqrt(sum(squares) / len(squares))
+    return [run for name, run in runs if name in bags]
+
+
+def typical_error(compared: Compared, bags: Sequence[str]) -> float | None:
+    """Error of a typical window over `bags` in noise floors, as in `pneumo diagnose`; None without them."""
+    return typical.typical_error(runs_of(compared, bags))

@@ -66,6 +66,13 @@ def test_a_machine_without_chambers_is_refused() -> None:
 )
 def test_what_cannot_run_is_refused_while_it_runs(values: dict[str, float], words: str) -> None:
     model = machine_from_parameters("axis", {}, ())
-    check_live(model, 0.6)
+    check_live(model, model, 0.6)
     with pytest.raises(UsageError, match=words):
-        check_live(changed(model, values), 0.6)
+        check_live(changed(model, values), model, 0.6)
+
+
+def test_a_piston_that_was_thrown_out_does_not_block_the_mending_of_its_model() -> None:
+    model = machine_from_parameters("axis", {}, ())
+    check_live(changed(model, {"quadratic_drag.coefficient": 5000.0}), model, -23.0)
+    with pytest.raises(UsageError, match=r"the piston is at -23 m, outside of a stroke of 1\.5 m"):
+        check_live(changed(model, {"piston.stroke": 1.5}), model, -23.0)

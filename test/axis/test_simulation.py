@@ -34,6 +34,39 @@ def test_it_is_the_model() -> None:
     assert np.array_equal(states, AXIS.simulate(np.full(300, 2.0), AXIS.state(), sample_time=1.0 / RATE, step=STEP))
 
 
+def driven_by_two(plant: Simulation) -> list[np.ndarray]:
+    """States after each of 200 samples with 2 V at the valve of chamber a and 4 V at that of chamber b."""
+    rows = []
+    for _ in range(200):
+        plant.valve.accept(2.0, 0)
+        plant.valve_b.accept(4.0, 0)
+        plant.advance(0, 1.0)
+        rows.append(plant.plant.state.copy())
+    return rows
+
+
+def test_a_valve_for_each_chamber_takes_a_command_of_its_own() -> None:
+    two = AXIS.with_effects([*AXIS.effects, "second_valve"], {"second_valve.offset": -5.0})
+    plant = Simulation(two, ValveInput(10.0, 0.0), Sensors(), rate=RATE, step=STEP)
+    rows = driven_by_two(plant)
+    held = np.tile([2.0, 4.0], (200, 1))
+    assert np.array_equal(rows, two.simulate(held, two.state(), sample_time=1.0 / RATE, step=STEP))
+    plant.reset()
+    assert (plant.valve.voltage, plant.valve_b.voltage) == (0.0, 5.0), "each closed"
+
+
+def test_an_external_force_and_two_commands_act_together() -> None:
+    two = AXIS.with_effects(["second_valve", *AXIS.effects], {"second_valve.offset": -5.0})
+    plant = Simulation(two, ValveInput(10.0, 0.0), Sensors(), rate=RATE, step=STEP)
+    plant.force.accept(150.0)
+    rows = driven_by_two(plant)
+    model, given = plant.described, {"U": 2.0, "U_b": 4.0, "load_force": 150.0}
+    held = np.tile([given[name] for name in model.inputs], (200, 1))
+    assert set(model.inputs) == set(given)
+    assert np.array_equal(rows, model.simulate(held, model.state(), sample_time=1.0 / RATE, step=STEP))
+    assert plant.load_cell == 150.0
+
+
 def test_readings_and_effort_are_those_of_the_state() -> None:
     plant = simulation()
     drive(plant, 200)

@@ -26,7 +26,7 @@ def _inside(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.check
 def test_the_error_falls_to_the_noise_floor(folder: Path) -> None:
-    options = ["--holdout", "runs/holdout_sweep", "--out", "more.yaml", "--json", "more.json"]
+    options = ["--holdout", "runs/holdout_sweep", "--out", "more.yaml", "--json", "more.json", "--report", "page.html"]
     line = [sys.executable, "-m", "pneumo_ros", "add", "viscous_friction", "runs", *options]
     done = subprocess.run(line, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -41,6 +41,10 @@ def test_the_error_falls_to_the_noise_floor(folder: Path) -> None:
     assert own["value"] == pytest.approx(VISCOUS, rel=0.02)
     assert own["low"] < VISCOUS < own["high"]
     assert load_model(folder / "more.yaml")["viscous_friction.coefficient"] == own["value"]
+    first = (folder / "page.html").read_text().partition('id="summary"')[2].partition("</section>")[0]
+    assert "was not fitted: measured, before and after" in first
+    assert "At the machine, for viscous_friction: look at the grease" in first
+    assert "with viscous_friction" in first
 
 
 def test_effects_and_recordings_are_separated() -> None:

@@ -2,6 +2,7 @@
 
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -49,6 +50,18 @@ def test_tab_offers_what_may_stand_there(line: str, some: set[str], never: str, 
     found = completions(line, tmp_path)
     assert some <= set(found)
     assert never not in found
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="no fish; type: sudo apt install fish")
+@pytest.mark.parametrize(("line", "offered"), [("pneumo dia", "diagnose"), ("pneumo effects lug", "lugre_friction")])
+def test_tab_in_fish(line: str, offered: str, tmp_path: Path) -> None:
+    bin_folder = Path(sys.executable).parent
+    asked = f"{shlex.quote(str(bin_folder / 'pneumo'))} completion fish | source; complete -C {shlex.quote(line)}"
+    path = f"{bin_folder}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["fish", "-c", asked], capture_output=True, text=True, env={**os.environ, "PATH": path, "HOME": str(tmp_path)}
+    )
+    assert done.stdout.split() == [offered], done.stderr
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

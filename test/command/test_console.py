@@ -99,3 +99,29 @@ def test_advice_names_the_command_as_it_can_be_typed(
     monkeypatch.setattr("sys.argv", [called])
     monkeypatch.setattr("shutil.which", lambda name: found)
     assert program() == shown
+
+
+def times_left(at: list[tuple[float, float]], monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What is said of the time left, for pairs of seconds passed and share done."""
+    stream, now = io.StringIO(), [0.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    with Progress("Diagnosing", stream) as progress:
+        for k, (now[0], share) in enumerate(at):
+            progress(share, f"step {k}")
+    return [line.partition(" %")[2].partition(":")[0].removeprefix(", ") for line in stream.getvalue().splitlines()]
+
+
+def test_the_time_left_does_not_rise(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search that slows down, as one did that said 3, 20, 46 and 10 minutes and was done after 21."""
+    slowing = [(10.0, 0.05), (60.0, 0.3), (120.0, 0.45), (180.0, 0.5), (900.0, 0.6), (1200.0, 0.95), (1259.0, 0.99)]
+    said = times_left(slowing, monkeypatch)
+    assert said[0] == ""  # too early
+    assert said[1:3] == ["about 2 min left", "about 80 s left"]
+    assert said[3:5] == ["longer than estimated"] * 2
+    shown = [float(one.split()[1]) * (60.0 if "min" in one else 1.0) for one in said if one.startswith("about")]
+    assert shown == sorted(shown, reverse=True)
+
+
+def test_the_time_left_follows_steady_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    said = times_left([(10.0 * k, 0.1 * k) for k in range(1, 10)], monkeypatch)
+    assert said == [f"about {100 - 10 * k} s left" for k in range(1, 10)]

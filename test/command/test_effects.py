@@ -34,7 +34,7 @@ def test_functions_and_constants_of_an_equation_are_shown(tmp_path: Path, capsys
     assert "def edge_flow(" in shown
     assert "def ratio_function(" in shown  # which only edge_flow calls
     (one,) = json.loads((tmp_path / "e.json").read_text())["effects"]
-    assert list(one["helpers"])[-2:] == ["edge_flow", "ratio_function"]
+    assert list(one["helpers"])[-3:] == ["edge_flow", "ratio_function", "root"]
 
 
 def test_what_comes_from_elsewhere_is_not(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

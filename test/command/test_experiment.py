@@ -11,6 +11,9 @@ from hiding import environment_without
 from pneumo_ros.command import main
 from pneumo_ros.experiment.catalogue import EXPERIMENTS
 from pneumo_ros.experiment.programme_file import read_programme
+from pneumo_ros.parts.design import Wishes, design
+from pneumo_ros.parts.shelf import load_shelf
+from pneumo_ros.plant import save_model
 
 SHORT = ["constant-voltage", "--voltages", "1.5", "--seconds", "1"]
 
@@ -77,6 +80,7 @@ def test_a_plan_that_would_be_aborted_says_so(tmp_path: Path, capsys: pytest.Cap
     ("arguments", "code", "sentence"),
     [
         (["constant-votage", "--plan"], 2, "did you mean constant-voltage"),
+        (["steps", "--read-as", "reversed-voltge", "--plan"], 2, "did you mean reversed-voltage"),
         (["steps", "--voltages", "1", "--plan"], 2, "voltages are for constant-voltage"),
         (["constant-voltage", "--voltages", "-1", "--plan"], 2, "allowed is more than 0 to 10 V"),
         (["constant-voltage", "--seconds", "0", "--plan"], 2, "it takes a time above 0"),
@@ -110,3 +114,18 @@ def test_without_ros_plans_are_made_and_plants_are_not_driven(tmp_path: Path) ->
     assert driven.returncode == 2
     assert driven.stderr.startswith("pneumo: error: rclpy")
     assert driven.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["constant-voltage", "sweep"])
+def test_a_short_fast_cylinder_gets_trials_that_it_has_room_for(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    wishes = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
+    save_model(design(wishes, load_shelf([])).model, "short.yaml")
+    assert main.main(["experiment", name, "--model", "short.yaml", "--plan", "--json", "plan.json"]) == 0
+    plan = json.loads(Path("plan.json").read_text())
+    assert plan["aborted"] == ""
+    assert plan["trials"]
+    if name == "constant-voltage":
+        assert "Left out, as the model would reach an end stop: +" in capsys.readouterr().err

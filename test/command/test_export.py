@@ -33,6 +33,11 @@ def test_fmu_of_either_version_is_written(further: tuple[str, ...], version: str
     assert f'fmiVersion="{version}"' in text
 
 
+def test_the_mjcf_names_the_machine_file_that_its_cylinder_is_made_of(tmp_path: Path) -> None:
+    assert main(["export", "mjcf", "axis", "--out", str(tmp_path / "axis.xml")]) == 0
+    assert 'load_model("axis")' in (tmp_path / "axis.xml").read_text()
+
+
 def test_without_a_compiler_an_fmu_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -56,6 +61,8 @@ def test_without_a_compiler_an_fmu_says_what_to_install(
         (["c", "axis", "--out", "axis.c", "--fmi", "2"], 2, "--fmi goes with fmu"),
         (["fmu", "axis", "--out", "axis.fmu", "--fmi", "1"], 2, "--fmi is 1; it takes 3 or 2"),
         (["fmu", "axis", "--out", "axis.zip"], 2, "this file ends in .fmu: --out axis.fmu"),
+        (["mjcf", "axis", "--out", "axis.mjcf"], 2, "this file ends in .xml: --out axis.xml"),
+        (["mjcf", "emps", "--out", "axis.xml"], 2, "emps has no chambers"),
         (["c", "axes", "--out", "axis.c"], 3, "give a YAML file or one of: axis, emps, paper"),
     ],
 )

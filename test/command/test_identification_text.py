@@ -21,7 +21,7 @@ def result(**changes: Any) -> dict[str, Any]:
     flags = {"explained_by_noise": False, "fits": True, "window_s": 0.25, "points": points}
     return {
         "parameters": {"a.b": one}, "undetermined": {}, "correlations": [], "map": quality | flags | changes,
-        "runs": [], "breakaways": [], "refused": [],
+        "runs": [], "breakaways": [], "refused": [], "motion": None,
     }  # fmt: skip
 
 

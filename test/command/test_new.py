@@ -68,6 +68,14 @@ def test_sizes_and_flow_replace_parts(tmp_path: Path) -> None:
     assert "0 V moves the piston" in re.sub(r"\n# ", " ", out.read_text())
 
 
+def test_the_largest_servo_valves_have_a_machine(tmp_path: Path) -> None:
+    """Their conductance is that at full opening of an arctangent which +-10 V do not reach."""
+    out = tmp_path / "large.yaml"
+    sizes = ["--bore", "63", "--rod", "20", "--stroke", "300", "--valve-flow", "qn 2000 l/min"]
+    assert main(["new", *sizes, "--supply", "6barg", "--mass", "20", "--out", str(out), "--quiet"]) == 0
+    assert load_model(out)["choked_flow.conductance_filling"] == pytest.approx(1.603e-7, rel=1e-3)
+
+
 def test_errors_say_what_to_type(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = ["--out", str(tmp_path / "my.yaml")]
     lacking = failed(["new", "--cylinder", "iso15552-32-250", *out], capsys)

@@ -1,12 +1,14 @@
 """`pneumo view`: a quick look at recordings in the terminal."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from command.lacking import record
 
+import pneumo_ros as pn
 from pneumo_ros.command.main import main
 from pneumo_ros.command.verb.view import BLOCKS, GAP, sparkline
 
@@ -40,3 +42,16 @@ def test_a_sparkline_rises_with_its_values() -> None:
     assert sparkline(time, time, 8) == BLOCKS[1:]
     assert sparkline(time, 0.0 * time, 3) == BLOCKS[5] * 3
     assert sparkline(time, np.where(time < 4.0, np.nan, time), 4) == f"{GAP * 2}{BLOCKS[1]}{BLOCKS[8]}"
+
+
+def test_pressures_in_bar_are_named_with_what_to_type(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    record(tmp_path / "steps", "steps")
+    right = pn.read(tmp_path / "steps")
+    assert right.pressure_a is not None
+    assert right.pressure_b is not None
+    pn.save(replace(right, pressure_a=1e-5 * right.pressure_a, pressure_b=1e-5 * right.pressure_b), tmp_path / "in_bar")
+    assert main(["view", str(tmp_path / "in_bar"), "--json", str(tmp_path / "view.json")]) == 1
+    assert "Not fit for other verbs: in_bar: chamber_a/pressure" in capsys.readouterr().out
+    (told,) = json.loads((tmp_path / "view.json").read_text())["recordings"]
+    assert "type --read-as bar" in told["unfit"]
+    assert main(["view", str(tmp_path / "in_bar"), "--read-as", "bar"]) == 0

@@ -5,7 +5,7 @@ from identify.making import own, rig
 
 from pneumo_ros.command.console import plain
 from pneumo_ros.compare.compare import compare
-from pneumo_ros.compare.findings import Finding, findings, verdict
+from pneumo_ros.compare.findings import Finding, explained, findings, verdict
 from pneumo_ros.compare.wording import amount, number, percent, times
 from pneumo_ros.plant import load_model
 
@@ -52,6 +52,19 @@ def test_the_true_machine_is_praised_in_one_sentence() -> None:
     result = plain(compare(model, [run]).as_dict())
     assert all(one.level == "good" for one in findings(result) if one.target != "position_m")
     assert verdict(result).startswith("Noise explains")
+
+
+def compared(equation: bool | None, *ratios: float) -> dict[str, object]:
+    """The part of the JSON of `compare` that decides: one equation, and the typical window of each signal."""
+    error = {f"signal_{i}": {"typical_ratio_to_noise": ratio} for i, ratio in enumerate(ratios)}
+    return {"equations": {"momentum": {"explained_by_noise": equation}}, "runs": [{"windows": 9, "error": error}]}
+
+
+def test_noise_explains_what_the_headline_says_it_does() -> None:
+    assert explained(compared(True, 1.0, 1.0, 1.4))  # one signal is off; the typical window is 1.15 x
+    assert explained(compared(None, 1.0, 1.0, 1.0))
+    assert not explained(compared(False, 1.0, 1.0, 1.0))
+    assert not explained(compared(True, 1.0, 1.0, 2.2))
 
 
 def test_what_could_not_be_judged_is_left_open() -> None:

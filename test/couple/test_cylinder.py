@@ -55,7 +55,7 @@ def test_it_gives_no_energy_from_nothing(axis: Model) -> None:
             position += dt * velocity
             if abs(position) > 0.9:
                 break
-            one._carry(position)
+            one.follow(position)
             worst = max(worst, one.energy() + 0.5 * mass * velocity**2 - begin)
     assert worst < 1e-5 * 1000.0  # J, of about 1000 J in the gas; 0.12 J where the gas does not follow the mechanism
 

@@ -65,6 +65,20 @@ def test_large_steps_give_the_arm_the_motion_of_small_ones() -> None:
         assert one.mass == pytest.approx(inertia / float(one.jacobian[0]) ** 2, rel=0.05)
 
 
+def test_two_sites_carry_a_cylinder_as_the_tendon_between_them_does() -> None:
+    axis, found = load_model("axis"), []
+    for place in ({"tendon": "lift"}, {"sites": ("base", "clevis")}):
+        model, data = made(ARM.format(step=1e-3))
+        mount = Mount(axis, length=float(data.ten_length[0]), **place)  # type: ignore[arg-type]
+        cylinders = Cylinders(model, data, {"lift": mount})
+        cylinders.by_name["lift"].cylinder.pressurise(5.5e5, 2.0e5)
+        for _ in range(300):
+            cylinders.step({"lift": 2.5})
+        one = cylinders.by_name["lift"]
+        found.append((float(data.qpos[0]), one.position, one.mass, *one.cylinder.pressures))
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
 def test_forces_from_outside_are_kept_and_seen() -> None:
     model, data = made(SLIDE)
     cylinders = Cylinders(model, data, {"one": Mount(load_model("axis"), joint="rod")})
@@ -85,7 +99,9 @@ def test_mistakes_are_named() -> None:
     for mount, words in (
         (Mount(axis, tendon="lft"), "unknown tendon 'lft'; did you mean lift"),
         (Mount(axis, joint="shoulder"), "joint shoulder does not slide"),
-        (Mount(axis), "takes a tendon or a joint, and not both"),
+        (Mount(axis), "takes one of tendon, joint and sites; it has none"),
+        (Mount(axis, joint="shoulder", sites=("base", "clevis")), "it has joint and sites"),
+        (Mount(axis, sites=("base", "clvis")), "unknown site 'clvis'; did you mean clevis"),
         (Mount(axis.with_parameters({"piston.stroke": 0.1}), tendon="lift"), "outside of its stroke"),
     ):
         with pytest.raises(UsageError, match=words):

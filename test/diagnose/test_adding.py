@@ -78,6 +78,7 @@ def test_segments_hold_the_breakaways() -> None:
         (["constant_lod"], "did you mean constant_load"),
         (["lugre_friction"], "already"),
         (["payload_mass", "payload_mass"], "named twice"),
+        (["arm_load"], r"not fitted.*arm_load: \{urdf: arm.urdf, joint"),
     ],
 )
 def test_what_cannot_be_added_is_refused(effects: list[str], sentence: str) -> None:

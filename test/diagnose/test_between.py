@@ -35,3 +35,9 @@ def test_a_law_that_is_missing_is_no_change_of_parameters() -> None:
 def test_where_nothing_remains_nothing_moved() -> None:
     model, _, train = own("steps")
     assert moved(model, train, own("sweep")[2]) is None
+
+
+def test_repeats_that_agree_within_a_per_cent_are_of_one_machine() -> None:
+    """Friction 0.8 % higher: its misfit is more than noise, and the parameters remove it, but none moves by 1 %."""
+    model, _, train = own("steps")
+    assert moved(model, train, own("sweep", friction=1.008)[2]) is None

@@ -2,10 +2,12 @@
 
 from functools import lru_cache
 
+import numpy as np
 import pytest
 from identify.making import own
 
 from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.plant import Model
 
@@ -78,3 +80,14 @@ def test_priors_are_as_wide_as_the_machine_file_states() -> None:
     assert (widths[STATIC], widths[volume]) == (30.0, 5e-5)
     others = [name for name in plain.names if name != STATIC]
     assert [widths[n] for n in others] == [p for n, p in zip(plain.names, plain.prior, strict=True) if n != STATIC]
+
+
+def test_a_hypothesis_leaves_the_chambers_some_volume() -> None:
+    """A machine file from data sheets states how well volumes are known, so that a linear step may move them far."""
+    model, _, run = own("steps")
+    volume = "chambers.volume_a"
+    found = Fitter(model.with_uncertainty({volume: 0.2 * model[volume]}), [run], [run], [LEAKS])
+    names = found.known(found.start).names
+    shift = np.array([-5.0 if name == volume else 0.0 for name in names])
+    larger = found.extended(found.start, Hypothesis(LEAKS, (), np.empty(0), shift, np.empty(0)))
+    assert larger[volume] > 0.5 * model["piston.stroke"] * model["piston.area_a"]

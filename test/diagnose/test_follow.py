@@ -21,7 +21,7 @@ def variants(model: Model) -> np.ndarray:
 
 
 def driven(rows: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    return {v.index: (v.states, v.claimed) for v in follow_each(LATE, frame_of(RUN, False), rows)}
+    return {v.index: (v.states, v.claimed) for v in follow_each(LATE, frame_of(RUN, LATE.chambers), rows)}
 
 
 def test_variants_with_the_same_sensors_are_one_group() -> None:
@@ -49,6 +49,6 @@ def test_effects_with_states_of_their_own_stay_finite_at_100_hz() -> None:
         "valve_spool_dynamics.angular_frequency": 1e3,
     }
     slow = model.with_effects([*model.effects, *swinging], neutral)
-    (alone,) = follow_each(model, frame_of(run, False), model.values[None])
-    (beside,) = follow_each(slow, frame_of(run, False), slow.values[None])
+    (alone,) = follow_each(model, frame_of(run, model.chambers), model.values[None])
+    (beside,) = follow_each(slow, frame_of(run, slow.chambers), slow.values[None])
     np.testing.assert_allclose(beside.claimed, alone.claimed, rtol=1e-6, atol=1e-6 * np.abs(alone.claimed).max())

@@ -1,5 +1,6 @@
 """Laws that differ from the catalogue's, and laws that do not, next to a second effect."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -7,8 +8,9 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.basefit import unaided
+from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.freedom import conditions, freed, relative
+from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaped, shaping, uneven, unevenness
 from pneumo_ros.diagnose.hypothesis import BaseFit
 from pneumo_ros.plant import load_model
 
@@ -22,7 +24,7 @@ POSITION, SPEED = SEEN[:, 0], SEEN[:, 1]
 NOISE = 0.5  # N
 PART = SimpleNamespace(
     run=SimpleNamespace(force_driven=True, sample_time=1.0),
-    frame=SimpleNamespace(states=SEEN[:, [0, 1]]),
+    frame=SimpleNamespace(states=SEEN[:, [0, 1]], chambers=()),
     held=SEEN[:, 2],
     families=[SimpleNamespace(run=0)],
 )
@@ -84,3 +86,43 @@ def test_what_sensors_do_has_no_such_freedom() -> None:
     model = START.with_effects([*START.effects, "pressure_sensor_offset"])
     fit = BaseFit(model, model, (), np.empty(0), np.empty(0), EVIDENCE, np.zeros(N), np.empty((N, 0)))
     assert freed(fit, ["pressure_sensor_offset"], RELATIVE) is fit
+
+
+PROFILE = "position_dependent_friction"
+KNOTS = np.array(
+    [np.roll(np.eye(1, 25)[0], k)[np.minimum((POSITION + 1.0) * 12.5, 24.0).astype(int)] for k in range(25)]
+)
+
+
+@pytest.mark.parametrize(("rough", "goes"), [(0.5, True), (10.0, False)])
+def test_friction_is_never_the_same_all_along_the_stroke(rough: float, goes: bool) -> None:
+    """A profile that the model lacks is free by a tenth of its usual size: a texture goes, a tight spot stays."""
+    tight = np.random.default_rng(1).normal(0.0, rough * 0.5, 25) @ KNOTS  # deviations; half of one: a tenth of usual
+    residual, slopes = RNG.normal(size=N) + tight, np.zeros((N, 1))
+    fit = BaseFit(START, START, ("a",), np.ones(1), np.zeros(1), EVIDENCE, residual, slopes)
+    free = uneven(fit, {PROFILE: 0.5 * KNOTS.T})
+    assert (free.bends, free.own) == (25, slice(0, 1))
+    left = float(np.sqrt(np.mean(unaided(free).residual ** 2)))
+    assert (left < 1.03) is goes
+    assert uneven(replace(fit, model=START.with_effects([*START.effects, PROFILE])), {PROFILE: KNOTS.T}).bends == 0
+
+
+def test_only_profiles_are_free_where_the_model_lacks_them() -> None:
+    """A tenth of the usual size of each knot, and nothing of an effect of one size."""
+    lacking = {name: coordinates(START.library.find(name)) for name in (PROFILE, "viscous_friction")}
+    whole = START.with_effects([*START.effects, *lacking], dict.fromkeys((c.name for c in lacking[PROFILE]), 0.0))
+    knots = [c.name for c in lacking[PROFILE]]
+    at = [list(whole.parameters).index(name) for name in knots]
+    linear = SimpleNamespace(residuals=lambda model, values, ranking: 3.0 * values[:, at])
+    found = unevenness(cast(Evidence, linear), whole, lacking)
+    assert list(found) == [PROFILE]
+    np.testing.assert_allclose(found[PROFILE], 0.03 * np.eye(25), atol=1e-12)
+
+
+def test_what_shapes_the_law_of_an_added_effect_is_no_other_effect() -> None:
+    """The curve of a valve: its subsonic index and the critical ratio of each path; not what shapes nothing added."""
+    iso = START.with_effects([*START.effects, "choked_flow"])
+    assert set(shaping(iso, ["choked_flow"])) == {"path_critical_ratios", "subsonic_index"}
+    assert shaping(iso, []) == shaping(MODEL, ["viscous_friction"]) == {}
+    fit = BaseFit(MODEL, MODEL, ("a",), np.ones(1), np.zeros(1), EVIDENCE, LAW, LAW[:, None])
+    assert shaped(fit, ["viscous_friction"]) is fit

@@ -121,6 +121,7 @@ def opposed(truth: Model, phase: float) -> Run:
     return Run(f"run {phase}", 1e-3, y, None, None, force, np.ones(n, dtype=bool), True, {"load_force": cell})
 
 
+@pytest.mark.check
 def test_a_load_that_a_load_cell_measures_is_no_friction() -> None:
     truth = rod().with_effects([*rod().effects, "measured_load"], {"measured_load.gain": -1.0})
     best = ranked(rod(), [opposed(truth, phase) for phase in (0.0, 1.0, 2.0)])[0]

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from pneumo_ros.diagnose.prediction import fitting_horizon, pays, typical_error
+from pneumo_ros.diagnose.prediction import pays, recordings, typical_error
 from pneumo_ros.diagnose.search import Search
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.shooting.windows import fitting_horizon
 
 BEFORE = {"position_m": 10.0, "pressure_a_pa": 1.0}
 
@@ -35,10 +36,20 @@ def lasting(seconds: float) -> Run:
     return Run(f"{seconds}", 1e-3, np.zeros(n), None, None, np.zeros((n - 1) * PARTS), np.ones(n, dtype=bool), True)
 
 
+def test_every_window_belongs_to_a_recording() -> None:
+    assert recordings([lasting(5.0), lasting(2.5)]).tolist() == [0, 0, 0, 0, 0, 1, 1]
+
+
 @pytest.mark.parametrize(("shortest", "horizon"), [(5.0, 1.0), (1.1, 1.0), (1.0, 0.5), (0.8, 0.5), (0.15, 0.1)])
 def test_short_strokes_are_predicted_over_less_than_a_second(shortest: float, horizon: float) -> None:
     assert fitting_horizon([lasting(5.0), lasting(shortest)]) == horizon
     assert fitting_horizon([lasting(5.0), lasting(shortest)], 0.1) == 0.1
+
+
+def test_gaps_shorten_the_horizon() -> None:
+    run = lasting(5.0)
+    run.measured[::450] = False
+    assert fitting_horizon([lasting(5.0), run]) == 0.2
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,7 @@ class Played(Search):
         self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, limits=[]))
         self.logs = cast(Any, lambda model: {"position": np.full(9, np.log(errors[self.added(model)]))})
         self.slips = cast(Any, lambda model: None)
+        self.recordings = np.zeros(9, dtype=np.int64)
 
     @staticmethod
     def added(model: Model) -> frozenset[str]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose import slip_candidates
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.slip_candidates import SlipFits, Slipping, as_candidate, deviations_better, resized
+from pneumo_ros.diagnose.slip_candidates import SlipFits, Slipping, as_candidate, deviations_better, paired, resized
 from pneumo_ros.diagnose.slips import Slips
 from pneumo_ros.plant import Model, load_model
 
@@ -53,6 +53,19 @@ def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
         candidate = as_candidate(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
         assert any("contradict it" in words for words in candidate.objections) is objects
         assert bool(candidate.objections) is objects
+
+
+def test_events_count_by_the_scatter_of_what_each_gains() -> None:
+    """Forty events whose error halves each; whose errors fall or rise by chance; a single one that falls far."""
+    rng = np.random.default_rng(1)
+    before = np.exp(rng.normal(1.0, 1.0, 40))
+    assert paired(before, 0.5 * before * np.exp(0.1 * rng.standard_normal(40)), SAMPLES) > 40.0
+    assert abs(paired(before, np.exp(rng.normal(1.0, 1.0, 40)), SAMPLES)) < 2.0
+    one = before.copy()
+    one[0] *= 1e-6
+    assert 0.0 < paired(before, one, SAMPLES) < 1.0
+    assert paired(one, before, SAMPLES) == -paired(before, one, SAMPLES)
+    assert paired(before, before, SAMPLES) == 0.0
 
 
 def test_sizes_grow_and_shapes_stay() -> None:

@@ -28,7 +28,7 @@ def slips() -> Slips:
     """Of a model that lacks the exponent of the machine that is recorded."""
     machine = truth().with_effects([*truth().effects, "stribeck_shape"], HIDDEN)
     runs = tuple(driven_by_pressures(truth(), constant_run(v, 3.0, model=machine)) for v in VOLTAGES)
-    rows = event_rows(alone(), runs)
+    rows = event_rows(runs)
     return Slips(runs, runs, rows, rows)
 
 

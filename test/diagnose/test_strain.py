@@ -51,7 +51,7 @@ class Played:
     def extended(self, model: Model, h: Hypothesis) -> Model:
         return FOUND
 
-    def refit(self, model: Model, iterations: int) -> Model:
+    def refit(self, model: Model, iterations: int, share: float = 0.0) -> Model:
         return model
 
     def deviations(self, model: Model) -> dict[str, float]:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pneumo_ros.diagnose.candidate import MARGIN
 from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.score import MARGIN
 from pneumo_ros.diagnose.unseen import unseen
 
 
@@ -30,3 +30,12 @@ def test_a_usual_size_must_gain_what_is_asked(deviation: float, nats: float | No
 def test_one_size_in_one_shape_is_enough() -> None:
     assert unseen([fitted("leakage_to_atmosphere", 30.0, 0.1)]) == {}
     assert unseen([fitted("heat_exchange", 30.0), fitted("heat_exchange", 0.1), fitted("heat_exchange", 9.0)]) == {}
+
+
+def test_points_of_a_profile_that_are_uncertain_together_are_seen() -> None:
+    """Each of 17 points is uncertain by 0.3 usual sizes, as all of them together resemble more friction."""
+    none = np.empty(0)
+    together = 0.3**2 * np.ones((17, 17)) + 0.02**2 * np.eye(17)
+    profile = Hypothesis("position_dependent_friction", (), none, none, none, covariance=together)
+    assert unseen([profile]) == {}
+    assert list(unseen([fitted("position_dependent_friction", *[2.0] * 17)])) == ["position_dependent_friction"]

@@ -104,6 +104,17 @@ def test_no_verdict_is_good_while_an_equation_or_a_prediction_fails(
         assert (word == "adequate") is not (bool(fails) or typical == FAR)
 
 
+def test_an_equation_with_too_few_windows_for_bins_fails_nonetheless() -> None:
+    """It was called adequate, at 133 noise floors, as no variable could be shown that the residual follows."""
+    failed = compared(**RUBBING)
+    failed.dependences["momentum"] = {}
+    rest = remains(failed, failed)
+    assert rest is not None
+    assert (rest.equation, rest.against, rest.material) == ("momentum", "", True)
+    assert failing(failed, failed, [], MODEL) == ("momentum",)
+    assert verdict([], rest, missed(failed)) == "unknown_effect"
+
+
 def test_what_is_missed_is_said_with_its_size() -> None:
     (one,) = missed(compared(FAR, **QUIET))
     assert one.sentence.startswith("predictions of the position on held-out recordings are off by 7.5 mm, 8 %")
@@ -124,3 +135,17 @@ def test_a_rise_within_the_scatter_of_windows_is_none() -> None:
     after = before + np.where(np.arange(40) < 2, 1.5, 0.0)
     assert not rises({"position_m": before}, {"position_m": after})
     assert rises({"position_m": before}, {"position_m": before + 0.075})  # the same rise, in every window
+
+
+def test_a_rise_in_one_of_four_recordings_is_none() -> None:
+    """Windows of one recording are not independent; ten of each recording rise alike. By a tenth, one decides."""
+    recording = np.repeat(np.arange(4), 10)
+    before = {"position_m": np.full(40, np.log(2.0))}
+    in_one, in_all = ({"position_m": before["position_m"] + 0.05 * rises_in} for rises_in in (recording == 3, 1.0))
+    assert rises(before, in_one)
+    assert not rises(before, in_one, recording)
+    assert rises(before, in_all, recording)
+    much = {"position_m": before["position_m"] + 0.2 * (recording == 3)}
+    assert rises(before, much, recording)
+    random = np.random.default_rng(1).normal(0.0, 1.0, 40) * (recording == 3)  # a few breakaways at another moment
+    assert not rises(before, {"position_m": much["position_m"] + random}, recording)

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from export.compiling import COMPILER, SAMPLE, STRIDE, compiled, largest_difference, needs_compiler
 from plant import checks
-from plant.catalogue import CATALOGUE, EFFECTS, everything, in_one_kernel, seeded
+from plant.catalogue import CATALOGUE, EFFECTS, actuated, everything, in_one_kernel, seeded
 
 from pneumo_ros.export import Exported, c_files
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.plant.library import ACTUATORS
 
 SHIPPED = ("axis", "paper", "emps")
 LEVELS = np.repeat(np.random.default_rng(2).choice([-6.0, -3.0, -1.2, 0.0, 1.2, 3.0, 6.0], 25), 400)
@@ -32,6 +33,19 @@ def test_ten_seconds_equal_those_of_the_kernel(name: str, tmp_path: Path) -> Non
     model = load_model(name)
     held, start = voltage(model), model.state(y=0.1, v=0.2)
     assert largest_difference(kernel(model, held, start), compiled(model, tmp_path).run(held, start)) < 1e-9
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", [name for name in ACTUATORS if name != "chambers"])
+def test_every_actuator_equals_the_kernel(name: str, tmp_path: Path) -> None:
+    model = actuated(name)
+    held, start = voltage(model)[:2000], model.state(y=0.1, v=0.2)
+    machine = compiled(model, tmp_path)
+    assert largest_difference(kernel(model, held, start), machine.run(held, start)) < 1e-9
+    state, out = machine.start(machine.defaults()), np.empty(len(machine.machine.outputs))
+    machine.call("outputs", state, machine.held(2.0), machine.defaults(), out)
+    signals = model.outputs(model.state()[None], np.array([2.0]), start=-1e-3)
+    assert out == pytest.approx([float(signals[one.name][0]) for one in machine.machine.outputs], rel=1e-14, abs=1e-9)
 
 
 @needs_compiler

@@ -1,15 +1,18 @@
 """`pneumo fleet` on recordings of machines that wear and machines that do not."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from fleet.making import record_fleet
 
+import pneumo_ros as pn
 from pneumo_ros.command.main import main
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.fleet.folder import campaigns
 from pneumo_ros.fleet.history import history
+from pneumo_ros.records import read_recording
 
 COULOMB = "lugre_friction.coulomb_friction"
 
@@ -144,3 +147,21 @@ def test_effects_appear_and_stay_or_come_and_go() -> None:
         "since": "2", "date": "", "from_the_start": False, "steady": True, "campaigns": 2,
     }  # fmt: skip
     assert (one["effects"][load]["from_the_start"], one["effects"][load]["steady"]) == (True, False)
+
+
+def test_a_machine_in_bar_is_read_as_its_rig_file_says(folder: Path, tmp_path: Path) -> None:
+    for path in sorted((folder / "young" / "week_0").iterdir()):
+        one = read_recording(path)
+        assert one.pressure_a is not None
+        assert one.pressure_b is not None
+        in_bar = replace(one, pressure_a=1e-5 * one.pressure_a, pressure_b=1e-5 * one.pressure_b)
+        pn.save(in_bar, tmp_path / "rigs" / "young" / "week_0" / path.name)
+    words = ["fleet", str(tmp_path / "rigs"), "--executor", "one", "--identify-only", "--quiet"]
+    assert main([*words, "--json", str(tmp_path / "unread.json")]) == 1
+    (tmp_path / "rig.yaml").write_text("rig: {machine: axis, read_as: bar}")
+    assert main([*words, "--json", str(tmp_path / "common.json"), "--rig", str(tmp_path / "rig.yaml")]) == 0
+    (tmp_path / "rigs" / "young" / "rig.yaml").write_text("rig: {read_as: bar}")
+    assert main([*words, "--json", str(tmp_path / "own.json")]) == 0
+    (found,) = json.loads((tmp_path / "own.json").read_text())["machines"]
+    (common,) = json.loads((tmp_path / "common.json").read_text())["machines"]
+    assert found == common

@@ -16,11 +16,14 @@ from fuzz.mutation import mutated
 from pneumo_ros.command.inputs import read_csv
 from pneumo_ros.control.control_file import load_control
 from pneumo_ros.experiment.programme_file import programme_text, read_programme
+from pneumo_ros.multiaxis import load_machine
+from pneumo_ros.multiaxis import machine_text as axes_text
+from pneumo_ros.multiaxis.machine_file import machine_from_dict
 from pneumo_ros.parts.listing import markdown
 from pneumo_ros.parts.shelf import read_part
 from pneumo_ros.plant import load_model
 from pneumo_ros.plant.library import Library
-from pneumo_ros.plant.machine_file import machine_text, parse_machine
+from pneumo_ros.plant.machine_file import machine_text, parse_machine, sections_of
 from pneumo_ros.records import Bag, read_recording, read_topics
 from pneumo_ros.tables.guess import guess
 from pneumo_ros.tables.guess_text import map_text
@@ -100,6 +103,13 @@ def read_machine(path: Path) -> None:
     model = load_model(path)
     again = parse_machine(machine_text(model), model.name, Library())
     assert (again.effects, again.parameters) == (model.effects, model.parameters)
+
+
+def read_axes(path: Path) -> None:
+    """A machine file of several axes that loads is written and read again as the same machine."""
+    machine = load_machine(path)
+    again = machine_from_dict(sections_of(axes_text(machine)), machine.name, Library())
+    assert again.as_dict() == machine.as_dict()
 
 
 def read_part_file(path: Path) -> None:
@@ -214,6 +224,14 @@ def _npz_table() -> bytes:
 
 
 PART = files("pneumo_ros.parts").joinpath("data/valves/smc-sy7000.yaml").read_bytes()
+AXES = b"""/**:
+  ros__parameters:
+    axes: [lift, reach]
+    effects: [viscous_friction]
+    viscous_friction: {coefficient: 50.0}
+    lift: {piston: {mass: 5.0, area_a: 4.1e-4, area_b: 3.0e-4, stroke: 2.0}}
+    reach: {piston: {mass: 2.0, area_a: 4.1e-4, area_b: 3.0e-4, stroke: 1.0}}
+"""
 STATED = b"    uncertainty:\n      lugre_friction: {coulomb_friction: 12.0, static_friction: 40 %}\n"
 
 
@@ -247,6 +265,7 @@ PARSERS = (
     Parser("SQLite recording", "bag.db3", read_in_order, _databases, lambda: recordings.folder_seeds()[0]),
     Parser("metadata.yaml", "bag/metadata.yaml", read_folder, _metadata, lambda: recordings.folder_seeds()[1], _mcap),
     Parser("machine file", "machine.yaml", read_machine, *_of_text(_shipped("axis"))),
+    Parser("machine file of several axes", "machine.yaml", read_axes, *_of_text(AXES)),
     Parser("part file", "part.yaml", read_part_file, *_of_text(PART)),
     Parser("machine file with uncertainty", "machine.yaml", read_machine, *_of_text(_shipped("axis") + STATED)),
     Parser("control file", "control.yaml", read_control, *_of_text(_shipped("control/cascade"))),

@@ -61,6 +61,15 @@ def test_slow_and_fast_voltages_determine_all_four() -> None:
     check(fit, (RIGHT, LEFT), 3e-4)
 
 
+def test_a_spool_that_follows_the_command_changes_nothing() -> None:
+    """In steady motion it stands at the command, and not where it rests."""
+    with_spool = started().with_effects([*started().effects, "valve_spool_dynamics"])
+    fit = fit_flow(with_spool, windows(0.80, -0.80, 0.83, -0.83, 1.0, -1.0, 7.0, -7.0))
+    assert not fit.undetermined
+    check(fit, (FILL,), 1e-3)
+    check(fit, (RIGHT, LEFT), 3e-4)
+
+
 def test_one_direction_leaves_the_other_limit() -> None:
     fit = fit_flow(started(), windows(0.80, 0.83, 1.0, 7.0))
     assert fit.undetermined == {LEFT: "needs runs at negative voltages"}

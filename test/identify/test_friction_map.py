@@ -70,6 +70,14 @@ def test_a_far_start_finds_the_same() -> None:
     check(fit_map(far, points(), [], FRICTION[:4]), FRICTION[:4], 0.02)
 
 
+def test_static_friction_is_not_below_coulomb_friction() -> None:
+    """Breakaways at 40 N, as on a rig that vibrates, where sliding takes 70 N."""
+    easy = points(model=truth().with_parameters({STATIC: 70.0}), speeds=SPEEDS[3:])
+    fit = fit_map(wrong(), easy, [breakaway(40.0, way) for way in (1, -1, 1, -1)], (STATIC, COULOMB, DRAG))
+    assert fit.values[STATIC] >= fit.values[COULOMB]
+    assert fit.values[COULOMB] == pytest.approx(70.0, abs=1.0)
+
+
 def test_an_outlying_run_costs_little() -> None:
     """Somebody leaned on the axis in one run of sixteen: least squares would be off by a newton."""
     spoilt = [replace(p, force=p.force + 15.0) if p.run == "run 6" else p for p in points()]

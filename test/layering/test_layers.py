@@ -14,7 +14,8 @@ import pneumo_ros
 
 PACKAGE = Path(pneumo_ros.__file__).parent
 CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
-BESIDE = {"errors", "nearest", "files", "environment", "yaml_text", "__init__"}  # modules below every room
+# modules below every room
+BESIDE = {"blas", "errors", "nearest", "files", "environment", "measured", "yaml_text", "__init__"}
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", "rosidl_runtime_py", "rosbag2_py"}
 FILES = sorted(PACKAGE.rglob("*.py"))
 

@@ -17,7 +17,17 @@ ROOT = Path(__file__).parents[2]
 CONFIG = sorted(path.relative_to(ROOT / "pneumo_ros") for path in (ROOT / "pneumo_ros" / "config").rglob("*.[yrxj]*"))
 LAUNCH = sorted(path.name for path in (ROOT / "launch").glob("*.launch.py"))
 URDF = sorted(path.name for path in (ROOT / "urdf").glob("*.xacro"))
-EXECUTABLES = ("pneumo", "simulator", "controller", "axis", "recorder", "player", "experiment", "identification")
+EXECUTABLES = (
+    "pneumo",
+    "simulator",
+    "controller",
+    "axis",
+    "recorder",
+    "player",
+    "experiment",
+    "identification",
+    "commission",
+)
 pytestmark = pytest.mark.check
 # A child must find its own libraries, not those of this session's environment
 CLEAN = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH")}

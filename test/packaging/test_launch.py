@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "launch").glob("*.launch.py"))
-EXECUTABLES = {"simulator", "controller", "axis", "recorder", "player", "experiment", "identification"}
+EXECUTABLES = {"simulator", "controller", "axis", "recorder", "player", "experiment", "identification", "commission"}
 
 
 def calls(path: Path, name: str) -> list[ast.Call]:

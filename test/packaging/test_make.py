@@ -76,7 +76,19 @@ def test_make_alone_says_what_there_is() -> None:
         [make, "--no-print-directory"], cwd=ROOT, capture_output=True, text=True, env=dict(os.environ)
     )
     assert done.returncode == 0
-    for target in ("demo", "test", "check", "slow", "bench", "fuzz", "chaos", "endurance", "supply", "pythons"):
+    for target in (
+        "demo",
+        "test",
+        "check",
+        "slow",
+        "bench",
+        "paper",
+        "fuzz",
+        "chaos",
+        "endurance",
+        "supply",
+        "pythons",
+    ):
         assert f"make {target} " in done.stdout
 
 

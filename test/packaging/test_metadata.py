@@ -23,8 +23,11 @@ ROSDEP = {name: f"python3-{name}" for name in (
     "argcomplete", "pandas",
 )}  # fmt: skip
 # rosbags, mcap and dash have no rosdep key; the former two bring three more; sweeps do without a cluster, most imports
-# without Parquet
-BY_PIP_ONLY = {"rosbags", "mcap", "apsw", "lz4", "zstandard", "dash", "distributed", "pyarrow", "mujoco"}
+# without Parquet; without threadpoolctl a diagnosis only takes longer
+BY_PIP_ONLY = {
+    "rosbags", "mcap", "apsw", "lz4", "zstandard", "dash", "distributed", "pyarrow", "mujoco", "pinocchio",
+    "threadpoolctl",
+}  # fmt: skip
 WITHOUT_WHEELS = {"control_msgs"}  # without it there is no action; the rest works
 # always installed with the other, in its version
 PART_OF = {"builtin_interfaces": "std_msgs", "llvmlite": "numba", "flask": "dash", "werkzeug": "dash"}
@@ -89,7 +92,7 @@ def test_everything_imported_is_declared() -> None:
     declared = {element.text for tag in ("depend", "exec_depend") for element in PACKAGE_XML.findall(tag)}
     extras = SETUP["extras_require"]
     asked = [*SETUP["install_requires"], *extras["report"], *extras["figures"], *extras["workbench"], *extras["dask"]]
-    asked += [*extras["parquet"], *extras["completion"], *extras["frames"], *extras["mujoco"]]
+    asked += [*extras["parquet"], *extras["completion"], *extras["frames"], *extras["mujoco"], *extras["arm"]]
     required = {re.split(r"[<>=]", name)[0] for name in asked}
     for name in third_party_imports():
         name = PART_OF.get(name, name)

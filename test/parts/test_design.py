@@ -50,8 +50,9 @@ def test_the_published_conductance_flows_at_full_signal() -> None:
     for valve, C in (("smc-sy7000", 4.1e-8), ("tel-regulator", 4.5e-9), ("smc-vq110u", 1.44e-9)):
         model = made(valve=valve).model
         state = model.state(p_b=7e5)
-        if "x_s" in model.states:
-            state[model.states.index("x_s")] = 10.0
+        for name, full in (("x_s", 10.0), ("body_a", 1.0)):
+            if name in model.states:
+                state[model.states.index(name)] = full
         found = model.outputs(state[None], [10.0])["port_flow_a"][0]
         wanted = C * NORMAL_DENSITY * 7e5 * math.sqrt(293.15 / 293.0)
         assert found == pytest.approx(wanted, rel=1e-6), valve
@@ -120,8 +121,9 @@ def test_a_valve_of_a_data_sheet_is_a_proportional_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("said", "error"),
     [
-        ({"valve": "smc-sy700"}, r"unknown valve 'smc-sy700'; did you mean smc-sy7000.*--parts FOLDER"),
-        ({"valve": "festo-vppe"}, r"festo-vppe is a regulator; this takes a valve"),
+        ({"valve": "smc-sy700"}, r"unknown valve or regulator 'smc-sy700'; did you mean smc-sy7000.*--parts FOLDER"),
+        ({"valve": "iso6432-25"}, r"iso6432-25 is a cylinder; this takes a valve or regulator"),
+        ({"valve": "festo-vppe"}, r"no flow of the valve is published here; give .*--valve-flow 'qn 700 l/min'"),
         ({"valve": "smc-vt307"}, r"no flow of the valve is published here; give .*--valve-flow 'qn 700 l/min'"),
         ({"cylinder": "iso15552-32"}, r"the stroke of the cylinder is missing; give"),
         ({"rod": "40"}, r"bore 32 mm, rod 40 mm .* make no cylinder"),
@@ -136,9 +138,40 @@ def test_what_makes_no_machine_is_refused_in_words(said: dict[str, str], error: 
         made(**said)
 
 
+def test_valves_that_serve_one_chamber_are_on_off_valves_with_the_published_times() -> None:
+    found = made(valve="smc-vq110u")
+    model = found.model
+    assert (model["on_off_valves.three_way"], model["on_off_valves.pulse_frequency"]) == (1.0, 50.0)
+    assert (model["on_off_valves.switch_on"], model["on_off_valves.switch_off"]) == (0.0035, 0.002)
+    assert model.uncertainty["on_off_valves.switch_on"] > 0.0
+    assert "on_off_valves.pulse_frequency" not in model.uncertainty, "the driver's choice"
+    assert any("pulses" in caution for caution in found.cautions)
+
+
+def test_a_regulator_serves_each_chamber_with_the_published_response() -> None:
+    found = made(valve="festo-vppe", valve_flow="C 2", supply="6barg")
+    model = found.model
+    assert model.inputs == ("U", "U_b")
+    assert model["pressure_regulator.pressure_range"] == pytest.approx(6e5), "no range is published: the supply"
+    assert model["pressure_regulator.angular_frequency"] == pytest.approx(2.67 / 0.075)
+    assert model["pressure_regulator.dead_band"] == 0.001
+    wide = made(valve="smc-itvh2020", valve_flow="C 2", supply="25barg").model
+    assert wide["pressure_regulator.pressure_range"] == pytest.approx(2e6)
+    assert 0.1 < stroke_times(model, found.signal[0])[0] < 2.0
+
+
+def test_filling_and_exhaust_have_the_published_critical_ratios() -> None:
+    model = made(valve="smc-51-sy540").model
+    assert model["choked_flow.critical_ratio"] == pytest.approx(0.35)
+    assert model["path_critical_ratios.exhaust_excess"] == pytest.approx(-0.12)
+    assert "path_critical_ratios" not in made(valve="smc-sy5000").model.effects, "one figure for both"
+
+
 def test_a_published_flow_gives_way_to_the_users() -> None:
     C = "choked_flow.conductance_filling"
-    assert made(valve="smc-vt307", valve_flow="C 0.2").model[C] == pytest.approx(0.2e-8, rel=0.01)
+    assert made(valve="airtac-4v210", valve_flow="C 0.2").model[C] == pytest.approx(0.2e-8, rel=0.01)
+    one = made(valve="smc-vt307", valve_flow="C 0.2").model
+    assert one[C] * np.arctan(one["arctan_flow.voltage_gain"] * 10.0) * 2.0 / np.pi == pytest.approx(0.2e-8)
     assert made(valve_flow="C 0.2").model["choked_flow.conductance_exhaust"] == pytest.approx(0.2e-8, rel=0.01)
 
 

@@ -19,7 +19,7 @@ def test_nominal_flow_is_that_of_the_catalogues_formula() -> None:
 
 def test_nominal_flow_is_what_the_machine_lets_through() -> None:
     C = flow.of_nominal_flow(700.0 * LITRES_A_MINUTE, 0.27)
-    mass_flow = edge_flow(7e5, 6e5, C, 0.27, 293.15)
+    mass_flow = edge_flow(7e5, 6e5, C, 0.27, 0.5, 293.15)
     assert mass_flow / NORMAL_DENSITY / LITRES_A_MINUTE == pytest.approx(700.0, rel=1e-12)
     assert flow.nominal_flow(C, 0.27) == pytest.approx(700.0 * LITRES_A_MINUTE, rel=1e-12)
 
@@ -31,7 +31,7 @@ def test_kv_gives_the_flow_of_an_incompressible_gas_at_small_differences(b: floa
     area = kv / 3600.0 / math.sqrt(2.0 * 1e5 / 1000.0)
     difference = 2e-3 * p  # the law is linear below a thousandth
     wanted = area * math.sqrt(2.0 * p / (flow.GAS * T) * difference)
-    assert edge_flow(p, p - difference, flow.of_kv(kv, b), b, T) == pytest.approx(wanted, rel=2e-3)
+    assert edge_flow(p, p - difference, flow.of_kv(kv, b), b, 0.5, T) == pytest.approx(wanted, rel=2e-3)
 
 
 def test_cv_is_kv_in_gallons_and_psi() -> None:

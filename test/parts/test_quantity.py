@@ -79,6 +79,12 @@ def test_what_is_no_flow_is_refused(text: str) -> None:
         wishes.flow(text)
 
 
+def test_a_signal_in_milliamperes_is_that_over_500_ohm() -> None:
+    found = wishes.signal("4,12,20mA")
+    assert [found[f"signal_{name}"].value for name in ("low", "closed", "high")] == pytest.approx([2.0, 6.0, 10.0])
+    assert wishes.signal("0,5,10 V") == wishes.signal("0,5,10")
+
+
 @pytest.mark.parametrize("text", ["0,5", "5,0,10", "a,b,c", "0,5,10,15"])
 def test_what_is_no_signal_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="the signal is"):

@@ -31,7 +31,7 @@ def written(folder: Path, text: str = OWN, name: str = "mine.yaml") -> Path:
 
 def test_every_shipped_figure_has_a_source_and_lies_within_its_interval() -> None:
     parts = load_shelf().parts
-    assert sum(part.kind == "valve" for part in parts.values()) >= 9
+    assert sum(part.kind == "valve" for part in parts.values()) >= 18
     assert sum(part.kind == "cylinder" for part in parts.values()) == 13
     for part in parts.values():
         assert part.figures, part.name
@@ -101,6 +101,7 @@ def test_a_name_is_taken_once(tmp_path: Path) -> None:
         ("opening: proportional", "opening: slowly", r"opening is 'slowly'; it takes proportional or switched"),
         ("kind: valve", "kind: vlave", r"unknown kind 'vlave'; did you mean valve"),
         ("title: Data sheet of my valve, ", "", r"a source takes a title"),
+        ("opening: proportional", "opening: switched\nways: 7/2", r"ways is '7/2'; switched valves take 3/2 or 2/2"),
         ("title: A valve of my own\n", "", r"title is None; it takes a text"),
         ("name: my-valve", "nam: my-valve", r"unknown entry 'nam'; did you mean name"),
         ("figures:", "figures: [1]\nx:", r"unknown entry 'x'"),

@@ -10,13 +10,22 @@ import numpy as np
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Effect, Library, Model, Parameter, load_model, maths
-from pneumo_ros.plant.library import FRAME
+from pneumo_ros.plant.library import ACTUATORS, FRAME
+from pneumo_ros.plant.reach import owners_read
 from pneumo_ros.plant.signals import SIGNALS
 
 LIBRARY = Library()
 FRAME_EFFECTS = [LIBRARY.frame(name) for name in FRAME]
-PARTS = ("imposed_motion", "measured_load")  # they read what a simulation of the axis alone does not have
-CATALOGUE = [LIBRARY.find(name) for name in LIBRARY.names() if name not in PARTS]
+# signals that a simulation of the axis alone does not have
+MEASURED = {name for name, row in SIGNALS.items() if row.kind == "measured" and not name.startswith("p_")}
+
+
+def reads_sensors(effect: type[Effect]) -> bool:
+    """Whether an effect reads what only a recording has."""
+    return any(MEASURED.intersection(function.reads) for function in effect.functions.values())
+
+
+CATALOGUE = [effect for effect in map(LIBRARY.find, LIBRARY.names()) if not reads_sensors(effect)]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")
 
@@ -87,14 +96,29 @@ def neutral_values(effect: type[Effect]) -> dict[str, float]:
 
 
 @cache
+def actuated(name: str, effects: tuple[str, ...] = AXIS.effects) -> Model:
+    """The axis with another actuator: piston, air and effects as they are, the actuator at its defaults."""
+    known = {key: value for key, value in AXIS.parameters.items() if key.partition(".")[0] in (*effects, *FRAME)}
+    own = {key: value for key, value in known.items() if key.partition(".")[0] not in ACTUATORS}
+    return Model.build(effects, own, frame=("piston", "air", name), name=name, defaults=True)
+
+
+@cache
 def machine(name: str) -> Model:
     """The axis with the effect added, in place of those that set the same signal."""
+    if name in ACTUATORS:
+        return actuated(name)
     effect, effects = EFFECTS[name], list(AXIS.effects)
     if name in effects or name in FRAME:
         return AXIS
     for signal in sets(effect):
         effects = [other for other in effects if signal not in sets(EFFECTS[other])]
-    return AXIS.with_effects([*effects, name])
+    return AXIS.with_effects([*effects, *needs(effect), name])
+
+
+def needs(effect: type[Effect]) -> list[str]:
+    """Effects that the axis lacks, whose parameters an effect reads: owner__key."""
+    return [owner for owner in owners_read(effect) if owner in EFFECTS and owner not in (*AXIS.effects, *FRAME)]
 
 
 def sets(effect: type[Effect]) -> set[str]:
@@ -129,7 +153,11 @@ def in_one_kernel(name: str) -> Model:
     """The machine with the effect, as `machine` makes it, by the kernel of everything: all others are at neutral."""
     others = {key: value for effect in CATALOGUE for key, value in neutral_values(effect).items()}
     own = machine(name).parameters
-    here = {key: value for key, value in own.items() if key.partition(".")[0] in (name, *AXIS.effects)}
+    here = {
+        key: value
+        for key, value in own.items()
+        if key.partition(".")[0] in (name, *needs(EFFECTS[name]), *AXIS.effects)
+    }
     return everything().with_parameters({**others, **here})
 
 

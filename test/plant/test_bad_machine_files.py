@@ -73,7 +73,7 @@ BAD = {  # fault: file, text of the error
     "effects a text": (TEXT.replace("[dead_zone,", "dead_zone #"), r"'effects' is 'dead_zone'; it takes a list"),
     "effects of numbers": (TEXT.replace("[dead_zone,", "[1,"), r"'effects' is \[1,"),
     "no effects": (TEXT.replace("    effects:", "    #"), r"'effects' is None"),
-    "other node": (TEXT.replace("/**:", "simulator:"), r"no section '/\*\*'"),
+    "other node": (TEXT.replace("/**:", "controller:").replace("effects:", "law:"), r"no section '/\*\*'"),
     "no ros__parameters": (TEXT.replace("ros__parameters", "parameters"), r"no section 'ros__parameters'"),
     "a list": ("- 1\n- 2\n", r"no section"),
     "empty": ("", r"no section"),

@@ -61,7 +61,7 @@ def test_leak_between_chambers_loses_nothing(name: str) -> None:
 def test_what_may_be_missing_in_a_machine_has_a_neutral_value() -> None:
     """All except those that every machine has, and those without a parameter that switches them off."""
     without = {effect.name for effect in CATALOGUE if not neutral_values(effect)}
-    assert without == {"arctan_flow", "end_stop", "lugre_friction", "rod_atmospheric_force"}
+    assert without == {"arm_load", "arctan_flow", "end_stop", "lugre_friction", "rod_atmospheric_force"}
 
 
 @every_listed_effect

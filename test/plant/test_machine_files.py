@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from pneumo_ros.errors import DataError
+from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.plant import Model, load_model, save_model
 from pneumo_ros.plant.machine_file import machine_text, shipped_machines
 
@@ -115,3 +115,10 @@ def test_a_parameter_whose_default_adds_nothing_may_be_left_out(tmp_path: Path) 
     path.write_text("\n".join(line for line in path.read_text().splitlines() if "static_ratio" not in line))
     model = load_model(path)
     assert (model[f"{name}.ratio"], model[f"{name}.static_ratio"]) == (0.3, 0.0)
+
+
+def test_two_machines_in_one_file_are_refused_by_name(tmp_path: Path) -> None:
+    inner = yaml.safe_load(machine_text(load_model("axis")))["/**"]
+    (tmp_path / "two.yaml").write_text(yaml.safe_dump({"/lift/simulator": inner, "/reach/simulator": inner}))
+    with pytest.raises(UsageError, match="2 machines \\(/lift/simulator, /reach/simulator\\)"):
+        load_model(tmp_path / "two.yaml")

@@ -102,6 +102,11 @@ def test_the_verb_writes_a_file_that_other_verbs_take(
     assert main(["compare", "strokes", "--rig", "rig.yaml", "--refit", "--quiet", "--json", "out.json"]) == 0
     compared = json.loads(Path("out.json").read_text())
     assert compared["runs"][0]["error"]["position_m"]["rms"] < 5e-4  # m; 0.2 m off without its zero
+    again = pn.read("strokes", rig="rig.yaml")
+    np.testing.assert_allclose(again.position, right.position, atol=1e-12)
+    np.testing.assert_allclose(again.pressure_a, right.pressure_a, rtol=1e-12)
+    with pytest.raises(UsageError, match="leave read_as, namespace and joint out"):
+        pn.read("strokes", rig="rig.yaml", read_as="bar")
     assert main(["rig", "check", "strokes", "--model", "my.yaml", "--out", "rig.yaml"]) == 2
     assert "exists and is not overwritten" in capsys.readouterr().err
     assert main(["compare", "strokes", "--rig", "rig.yaml", "--read-as", "kPa"]) == 2

@@ -10,7 +10,15 @@ from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.records import Recording
 from pneumo_ros.records.checks import gaps, outside_gaps, pauses
 from pneumo_ros.records.clocks import after_turns, jumps
-from pneumo_ros.records.corrections import PRESSURE_UNITS, WORDS, corrected, parse_words
+from pneumo_ros.records.corrections import (
+    FORCE_UNITS,
+    LEFT_OUT,
+    LENGTH_UNITS,
+    PRESSURE_UNITS,
+    WORDS,
+    corrected,
+    parse_words,
+)
 from pneumo_ros.records.series import Series
 from pneumo_ros.records.unfit import check_use
 
@@ -26,7 +34,8 @@ def axis(**changes: object) -> Recording:
     signals = {
         "time": TIME, "position": 0.1 * SWING, "velocity": 0.6 * SWING, "voltage": SWING, "command_time": TIME,
         "command": SWING, "pressure_a": 3.73e5 + 2.67e5 * SWING + NOISE[0], "supply_pressure": np.full(N, 7e5),
-        "pressure_b": 3.73e5 - 2.67e5 * SWING + NOISE[1],
+        "pressure_b": 3.73e5 - 2.67e5 * SWING + NOISE[1], "effort": 50.0 * SWING, "load_cell": 20.0 * SWING,
+        "command_b_time": TIME, "command_b": -0.5 * SWING,
     }  # fmt: skip
     return recording(**(signals | changes))
 
@@ -38,20 +47,30 @@ def test_what_was_recorded_otherwise_is_put_right(words: tuple[str, ...]) -> Non
     unit = next((PRESSURE_UNITS[word] for word in words if word in PRESSURE_UNITS), 1.0)
     below = ATMOSPHERE if "gauge" in words else 0.0
     a, b, supply = ((p - below) / unit for p in (right.pressure_a, right.pressure_b, right.supply_pressure))
-    length = (1e3 if "mm" in words else 1.0) * (-1.0 if "reversed-position" in words else 1.0)
+    length = next((1.0 / LENGTH_UNITS[word] for word in words if word in LENGTH_UNITS), 1.0) * (
+        -1.0 if "reversed-position" in words else 1.0
+    )
     sign = -1.0 if "reversed-voltage" in words else 1.0
+    force = next((1.0 / FORCE_UNITS[word] for word in words if word in FORCE_UNITS), 1.0)
+    force *= -1.0 if "reversed-force" in words else 1.0
     wrong = replace(
         right,
         position=right.position * length,
         velocity=right.velocity * length,
         voltage=sign * right.voltage,
         command=sign * right.command,
+        command_b=sign * right.command_b,
         pressure_a=b if "swapped-chambers" in words else a,
         pressure_b=a if "swapped-chambers" in words else b,
-        supply_pressure=supply,
+        supply_pressure=supply - (ATMOSPHERE if "gauge-supply" in words else 0.0),
+        effort=right.effort * force,
+        load_cell=right.load_cell * force,
     )
     mended = corrected(wrong, words, ATMOSPHERE)
-    for name in ("position", "velocity", "voltage", "command", "pressure_a", "pressure_b", "supply_pressure"):
+    left_out = [name for word in words for name in LEFT_OUT.get(word, ())]
+    for name in left_out:
+        assert getattr(mended, name) is None
+    for name in {*right.signals, "command", "command_b"} - {*left_out}:
         np.testing.assert_allclose(getattr(mended, name), getattr(right, name), rtol=1e-12, atol=1e-9, err_msg=name)
 
 

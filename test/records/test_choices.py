@@ -9,7 +9,7 @@ from records.making import START, STORE, serialized, write_rosbags
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.records import BagWriter, encoding, read_recording, read_topics
-from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, TYPES
+from pneumo_ros.records.contract import COMMAND, JOINT_STATES, PRESSURE_A, PRESSURE_B, TYPES
 
 
 def joint_states(names: list[list[str]], position: np.ndarray) -> list[bytes]:
@@ -165,8 +165,10 @@ def test_a_definition_nobody_knows(tmp_path: Path) -> None:
         read_topics(path)
 
 
-def test_one_pressure_is_not_enough(tmp_path: Path) -> None:
+def test_one_pressure_is_enough_and_none_is_not(tmp_path: Path) -> None:
     content = streams()
     del content[PRESSURE_A], content[COMMAND]
+    assert read_recording(write(tmp_path / "one", content)).pressures_drive
+    del content[PRESSURE_B]
     with pytest.raises(DataError, match="lacks valve/command or the effort"):
         read_recording(write(tmp_path / "run", content))

@@ -39,6 +39,16 @@ def test_commands_come_back_as_they_were_written(tmp_path: Path) -> None:
     np.testing.assert_array_equal(recording.voltage, np.select([TIME < 0.0105, TIME < 0.2], [1.0, -2.0], 3.0))
 
 
+def test_commands_of_two_valves_come_back(tmp_path: Path) -> None:
+    signals = {name: SIGNALS[name] for name in ("position", "pressure_a", "pressure_b")}
+    second = {"command_b_time": np.array([0.0, 0.0305]), "command_b": np.array([5.0, 7.0])}
+    write_recording(tmp_path / "run", time=TIME, voltage=VOLTAGE, **second, **signals)
+    recording = read_recording(tmp_path / "run")
+    np.testing.assert_allclose(recording.command_b_time, second["command_b_time"], atol=1e-9)
+    np.testing.assert_array_equal(recording.command_b, second["command_b"])
+    np.testing.assert_array_equal(recording.voltage, VOLTAGE)
+
+
 def test_a_rig_without_velocity_and_effort(tmp_path: Path) -> None:
     recording = read_recording(write(tmp_path / "run", streams()))
     assert recording.velocity is None
@@ -65,14 +75,18 @@ def test_pressures_alone_tell_the_drive(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("lost", "said"),
-    [((PRESSURE_A,), PRESSURE_A), ((COMMAND, PRESSURE_A), "effort in joint_states"), ((JOINT_STATES,), "is missing")],
+    [
+        ((PRESSURE_A, PRESSURE_B), f"lacks {PRESSURE_A} and {PRESSURE_B}"),
+        ((COMMAND, PRESSURE_A, PRESSURE_B), "effort in joint_states"),
+        ((JOINT_STATES,), "is missing"),
+    ],
 )
 def test_what_is_missing_is_named(tmp_path: Path, lost: tuple[str, ...], said: str) -> None:
     content = {name: stream for name, stream in streams().items() if name not in lost}
     path = write(tmp_path / "run", content, "/axis")
     with pytest.raises(DataError, match=said) as caught:
         read_recording(path)
-    assert "/axis/chamber_b/pressure" in str(caught.value)  # the existing names
+    assert all(f"/axis/{name}" in str(caught.value) for name in streams() if name not in lost)  # the existing names
     assert "Needed: joint_states, chamber_a/pressure" in str(caught.value)
 
 

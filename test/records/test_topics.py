@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from mcap.writer import CompressionType, Writer
 from records.making import START, STORE, assert_same, by_rosbags, interleaved, random_message, serialized, write_rosbags
 
@@ -11,6 +12,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.records import read_topics, topic_data
 from pneumo_ros.records.contract import GLOBAL_TYPES, TYPES
 from pneumo_ros.records.message_types import trimmed
+from pneumo_ros.records.metadata import BagTopic, as_yaml
 from pneumo_ros.records.topics import MOST_LAYOUTS
 
 CONTRACT = {f"/axis/{name}": kind for name, kind in TYPES.items()} | GLOBAL_TYPES
@@ -44,6 +46,23 @@ def test_others_reach_types_the_contract_does_not_have() -> None:
 def test_every_storage_equals_rosbags(tmp_path: Path, storage: str, compression: str) -> None:
     path = write_rosbags(tmp_path / "bag", interleaved(CONTRACT, 40), storage, compression)
     assert_same(read_topics(path), by_rosbags(path))
+
+
+@pytest.mark.parametrize("compression", ["none", "message", "file"])
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_metadata_whose_quality_of_service_differs_from_the_file(
+    tmp_path: Path, storage: str, compression: str
+) -> None:
+    """As after an edit for `ros2 bag play`; rosbags alone then finds no message."""
+    path = write_rosbags(tmp_path / "bag", interleaved(CONTRACT, 4), storage, compression)
+    before = by_rosbags(path)
+    text = (path / "metadata.yaml").read_text()
+    changed = yaml.safe_load(text)
+    for one in changed["rosbag2_bagfile_information"]["topics_with_message_count"]:
+        one["topic_metadata"]["offered_qos_profiles"] = [*BagTopic("t", "k", latched=True).profiles()]
+        one["topic_metadata"]["type_description_hash"] = "RIHS01_" + 64 * "0"
+    (path / "metadata.yaml").write_text(as_yaml(changed))
+    assert_same(read_topics(path), before)
 
 
 @pytest.mark.check

@@ -71,6 +71,7 @@ def test_the_verdicts_differ_in_word_sign_and_colour(opened: Open) -> None:
         assert len(signs) == len(colours) == len(WORDS)
 
 
+@pytest.mark.check
 def test_sections_follow_each_other_from_the_answer_to_the_origin(opened: Open) -> None:
     for verdict in WORDS:
         sections = opened(verdict).page.locator("main > section")

@@ -18,7 +18,8 @@ from pneumo_ros.report.page import page_html
 from pneumo_ros.report.provenance import provenance
 
 ELEMENTS = """html head meta title style body main header nav section details summary h1 h2 h3 p a ul li div figure
-figcaption strong span b small table caption thead tbody tr th td button code pre noscript script"""
+figcaption strong span b small table caption thead tbody tr th td button code pre noscript script
+svg g path text"""
 
 
 @pytest.mark.parametrize("minutes", [0.1, 3.0])

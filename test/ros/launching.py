@@ -88,14 +88,22 @@ class Node:
         remappings: list[tuple[str, str]] | None = None,
         output: str = "log",
         condition: IfCondition | None = None,
+        on_exit: Any = None,
     ) -> None:
         self.package, self.executable, self.namespace, self.condition = package, executable, namespace, condition
-        self.parameters, self.arguments = parameters or [], arguments or []
+        self.parameters, self.arguments, self.on_exit = parameters or [], arguments or [], on_exit
+
+
+class Shutdown:
+    def __init__(self, *, reason: str) -> None:
+        self.reason = reason
 
 
 MODULES = {
-    "launch": {"LaunchDescription": list},
-    "launch.actions": {"DeclareLaunchArgument": DeclareLaunchArgument},
+    "launch": {"LaunchDescription": list, "LaunchContext": SimpleNamespace},
+    "launch.actions": {"DeclareLaunchArgument": DeclareLaunchArgument, "Shutdown": Shutdown},
+    "launch.events": {},
+    "launch.events.process": {"ProcessExited": SimpleNamespace},
     "launch.conditions": {"IfCondition": IfCondition},
     "launch.substitutions": {
         "Command": Command,
@@ -134,6 +142,14 @@ def others(file: str, **given: object) -> dict[str, tuple[list[str], dict[str, s
     return found
 
 
+def after_exit(file: str, executable: str, code: int, **given: object) -> list[str]:
+    """Reasons for which launch ends everything when `executable` has ended with exit code `code`."""
+    nodes, arguments = _started(file, given)
+    (one,) = [node for node in nodes if node.executable == executable]
+    context = SimpleNamespace(launch_configurations=arguments)
+    return [action.reason for action in one.on_exit(SimpleNamespace(returncode=code), context)]
+
+
 def _started(file: str, given: Mapping[str, object]) -> tuple[list[Node], dict[str, str]]:
     """The nodes whose conditions hold, and all launch arguments."""
     entities = _load(file).generate_launch_description()
@@ -142,7 +158,9 @@ def _started(file: str, given: Mapping[str, object]) -> tuple[list[Node], dict[s
     assert all(str(value) for value in given.values()), "ros2 launch refuses NAME:= without a value"
     values = {**declared, **given}
     assert None not in values.values(), f"arguments without default: {values}"
-    arguments = {name: _text(value, {}) for name, value in values.items()}
+    arguments: dict[str, str] = {}
+    for name, value in values.items():  # a default may depend on the arguments before it
+        arguments[name] = _text(value, arguments)
     nodes = [entity for entity in entities if isinstance(entity, Node)]
     return [one for one in nodes if one.condition is None or one.condition.holds(arguments)], arguments
 

@@ -76,7 +76,9 @@ def running(*command: str, cwd: Path, **variables: str) -> Iterator[Running]:
 
 
 def node(name: str, *ros_args: str, **parameters: object) -> list[str]:
-    """Command of a node with ROS parameters."""
+    """Command of a node with ROS parameters. Without a machine file, the plants of tests close their valve at 0 V."""
+    if name in ("controller", "experiment") and "--params-file" not in ros_args:
+        parameters = {"closed_signal": "0V", **parameters}
     given = [part for key, value in parameters.items() for part in ("-p", f"{key}:={_yaml(value)}")]
     return ["-m", f"pneumo_ros.ros.{name}", "--ros-args", *ros_args, *given]
 

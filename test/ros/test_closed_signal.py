@@ -37,7 +37,27 @@ def test_the_piston_rests_until_it_is_asked_and_the_valve_is_closed_at_its_signa
             signals = [message.data for message in probe.heard["valve/command"]]
             assert 0.0 <= min(signals) < CLOSED < max(signals) <= 10.0
             assert controller.end() == 0
-        probe.wait(lambda: probe.voltage == CLOSED, "the closed signal as the last command")
+        probe.wait(lambda: float(probe.health(f"{PLACE}/simulator")[1]["voltage_V"]) == CLOSED, "a closed valve")
         probe.comes_to_rest()
         probe.close()
+        assert simulator.end() == 0
+
+
+def test_a_controller_moves_a_rig_that_is_wired_otherwise_by_its_rig_file(tmp_path: Path) -> None:
+    """Millimetres from one end, gauge bar, both pressure plugs and the command swapped, a valve that closes at 5 V."""
+    words, place = "bar,mm,gauge,swapped-chambers,reversed-voltage,zero=1000mm,closed=5V", ("-r", "__ns:=/wired")
+    save_model(load_model("axis"), tmp_path / "axis.yaml")
+    (tmp_path / "rig.yaml").write_text(f"rig: {{machine: axis.yaml, read_as: '{words}', range: 0V..10V}}")
+    plant = node("simulator", *place, wired_as=words, publish_rate=200.0)
+    line = node("controller", *place, closed_signal="", rig=str(tmp_path / "rig.yaml"))
+    with running(*plant, cwd=tmp_path) as simulator, running(*line, cwd=tmp_path) as controller:
+        controller.wait_for("valve closed at 5 V")
+        probe = AxisProbe("wired")
+        probe.wait(lambda: probe.heard["valve/command"], "a command")
+        assert probe.position == pytest.approx(1000.0, abs=1.0)  # mm, as the rig sends it
+        probe.aim(0.1)
+        probe.wait(lambda: abs(probe.position - 1100.0) < 3.0, "the goal")
+        assert min(message.data for message in probe.heard["valve/command"]) < 4.0  # reversed
+        probe.close()
+        assert controller.end() == 0
         assert simulator.end() == 0

@@ -205,7 +205,7 @@ sys.exit(main(sys.argv[1:]))
 
 
 def test_a_law_that_reads_pressures_gets_those_of_its_sample(tmp_path: Path) -> None:
-    given = ["--ros-args", "-r", "__ns:=/spied", "-p", "measurement_timeout:=10.0"]
+    given = ["--ros-args", "-r", "__ns:=/spied", "-p", "measurement_timeout:=10.0", "-p", "closed_signal:=0V"]
     with running("-c", SPY, *given, cwd=tmp_path) as process, probe("spied") as one:
         plant = Plant(one)
         pressures = [one.node.create_publisher(FluidPressure, f"chamber_{c}/pressure", BEST_EFFORT) for c in "ab"]

@@ -195,7 +195,7 @@ def test_a_signal_closes_the_valve_first(number: signal.Signals, tmp_path: Path)
 def on_plant(tmp_path: Path, namespace: str) -> list[str]:
     """`pneumo experiment` with the scripted plant's programme."""
     (tmp_path / "two.yaml").write_text(programme_text(PROGRAMME), encoding="utf-8")
-    return pneumo("two.yaml", "--namespace", namespace, "--out", "out", "--timeout", "2000")
+    return pneumo("two.yaml", "--closed", "0V", "--namespace", namespace, "--out", "out", "--timeout", "2000")
 
 
 def test_ctrl_c_at_the_command_closes_the_valve(tmp_path: Path) -> None:

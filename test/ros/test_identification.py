@@ -147,6 +147,10 @@ def test_bags_are_picked_up_identified_written_and_reported(tmp_path: Path, bags
         values = hears.until_health("axis_2.yaml")
         assert values["identifications"] == "2"
         assert process.end(signal.SIGINT) == 0, process.said
+    (said, *_) = [line for _, line in process.lines if "recordings in" in line]
+    assert "lugre_friction.coulomb_friction" in said
+    for unit in (" N;", " N s2/m2", " N/m"):
+        assert unit in said
     full = json.loads(written.with_suffix(".json").read_text(encoding="utf-8"))
     assert len(full["map"]["points"]["velocity"]) > 5
     assert "Traceback" not in process.said

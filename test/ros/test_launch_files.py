@@ -1,10 +1,11 @@
 """Which nodes the launch files start, with which parameters."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 import yaml
-from ros.launching import ROOT, commands, others
+from ros.launching import ROOT, after_exit, commands, others
 
 IDENTIFY = {"rig/simulator", "twin/simulator", "rig/experiment", "identified/identification"}
 
@@ -55,11 +56,26 @@ def test_the_experiment_is_made_for_the_machine_of_the_twin_and_the_twin_is_the_
     assert identification["folder"] == "1"
 
 
+def test_an_experiment_that_died_ends_everything_and_says_where_its_recordings_are() -> None:
+    assert after_exit("identify.launch.py", "experiment", 0) == []
+    (reason,) = after_exit("identify.launch.py", "experiment", 3, folder="runs_1")
+    assert "exit code 3" in reason
+    assert "runs_1" in reason
+
+
+def test_a_simulated_rig_may_be_silent_longer_than_a_real_one(tmp_path: Path) -> None:
+    for given, seconds in (({}, 2.0), ({"simulate": "false"}, 0.2), ({"timeout": "5.0"}, 5.0)):
+        nodes = commands("identify.launch.py", tmp_path, **given)
+        assert parameters(nodes["rig/experiment"])["measurement_timeout"] == seconds
+
+
 def test_below_ros2_control_the_plant_lives_in_a_namespace(tmp_path: Path) -> None:
     nodes = commands("ros2_control.launch.py", tmp_path, namespace="rig")
     assert set(nodes) == {"rig/simulator", "rig/controller"}
     (alone,) = commands("ros2_control.launch.py", tmp_path, simulate="false", control="mine.yaml").values()
-    assert alone[-3:] == ["mine.yaml", "--params-file", str(ROOT / "config" / "axis.yaml")]
+    files = [after for word, after in pairwise(alone) if word == "--params-file"]
+    assert files[:2] == ["mine.yaml", str(ROOT / "config" / "axis.yaml")]
+    assert parameters(alone)["rig"] == ""
     above = others("ros2_control.launch.py", namespace="rig", rviz="true")
     assert set(above) == {"robot_state_publisher", "ros2_control_node", "spawner", "rviz2"}
     made = above["robot_state_publisher"][1]["robot_description"]

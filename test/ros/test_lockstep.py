@@ -102,6 +102,10 @@ def test_a_controller_that_dies_is_not_waited_for(tmp_path: Path) -> None:
         controller.process.kill()
         process.wait_for("no command within 0.3 s")
         process.wait_for("controller left; the plant runs open loop")
-        one.wait(lambda: one.health("orphan/simulator")[1]["voltage_V"] == "0", "a closed valve")
-        assert int(one.health("orphan/simulator")[1]["command_timeouts"]) >= 3
+
+        def closed() -> dict[str, str] | None:
+            values = one.health("orphan/simulator")[1]
+            return values if values["voltage_V"] == "0" else None
+
+        assert int(one.wait(closed, "a closed valve")["command_timeouts"]) >= 3
         assert process.end() == 0

@@ -94,7 +94,7 @@ def test_a_stream_that_breaks_off_ends_at_its_last_position(rig: Rig) -> None:
         last = begin + side * 0.08 * 0.01 * tick
         one.command_joints(["piston"], [last], [side * 0.08])
         time.sleep(0.01)
-    one.arrives(last, 5e-3)
+    one.arrives(last)
     assert "the last position is held" in one.health(f"{PLACE}/controller")[1]["reason"]
 
 

@@ -91,7 +91,7 @@ def followed(axis: AxisProbe) -> float:
         axis.command_joints(["piston"], [wanted], [0.03 * rate * math.sin(rate * passed)])
         worst = max(worst, abs(axis.position - wanted))
         time.sleep(0.01)
-    axis.arrives(start, 5e-3)
+    axis.arrives(start)
     return worst
 
 

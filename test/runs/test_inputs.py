@@ -15,8 +15,8 @@ from pneumo_ros.plant import load_model
 from pneumo_ros.plant.mechanical import mechanical, whole
 from pneumo_ros.reading.read import ReadOptions, checked_run, read_run
 from pneumo_ros.records import Recording, write_recording
-from pneumo_ros.runs.inputs import check_inputs, measured_inputs, measuring
-from pneumo_ros.runs.run import PARTS, Run, make_run
+from pneumo_ros.runs.inputs import check_inputs, judged, measured_inputs, measuring
+from pneumo_ros.runs.run import ATMOSPHERE, PARTS, Run, make_run
 
 N = 3000
 TIME = np.arange(N) * 1e-3
@@ -100,8 +100,17 @@ def test_pressures_alone_push_the_piston() -> None:
     inputs = run.inputs(NAMES)
     areas = SEALED["piston.area_a"], SEALED["piston.area_b"]
     assert inputs[:, 0] == pytest.approx(areas[0] * inputs[:, 1] - areas[1] * inputs[:, 2], rel=1e-9)
-    with pytest.raises(DataError, match="has no effort and not both chamber pressures"):
-        checked_run(force_driven(effort=None, pressure_b=None), SEALED)
+    with pytest.raises(DataError, match="has no effort and no chamber pressure"):
+        checked_run(force_driven(effort=None, pressure_a=None, pressure_b=None), SEALED)
+
+
+def test_without_its_sensor_the_other_side_is_the_atmosphere() -> None:
+    run, _ = checked_run(force_driven(effort=None, pressure_b=None), EMPS)
+    inputs = run.inputs(("U", "p_a"))
+    thrust = EMPS["piston.area_a"] * inputs[:, 1] - EMPS["piston.area_b"] * ATMOSPHERE
+    assert inputs[:, 0] == pytest.approx(thrust, rel=1e-9)
+    said = judged(measuring(EMPS, [run]), [run])
+    assert said.startswith("Judged: momentum (the other side is taken at the atmosphere's pressure; chamber_b/pressure")
 
 
 def test_a_load_cell_is_an_input_where_it_is_not_the_force_that_is_predicted() -> None:

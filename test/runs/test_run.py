@@ -70,6 +70,13 @@ def test_before_the_first_command_the_first_one_is_taken() -> None:
     assert (run.input == 1.5).all()
 
 
+def test_a_second_command_is_held_like_the_first() -> None:
+    changes = {"command_b_time": TIME[[0, 30]] + 5e-4, "command_b": np.array([5.0, 7.0])}
+    held = make_run(valve_driven(**changes)).further["U_b"]
+    assert (held[:305] == 5.0).all()
+    assert (held[305:] == 7.0).all()
+
+
 def test_signals_have_the_names_of_reports() -> None:
     assert list(make_run(valve_driven()).signals) == ["position_m", "pressure_a_pa", "pressure_b_pa"]
 
@@ -116,7 +123,7 @@ def test_the_grid_follows_the_true_samples() -> None:
         ({"time": np.arange(200) * 0.1}, "sampled every 100 ms"),
         ({"pressure_a": np.full(N, 1500.0)}, "chamber_a/pressure is 1500 to 1500 in 2000 samples: its sensor gives no"),
         ({"pressure_b": np.linspace(-3e3, 2e5, N)}, "chamber_b/pressure falls to -3000 Pa at 0.000 s.*--read-as gauge"),
-        ({"pressure_a": None}, "no chamber pressures"),
+        ({"pressure_a": None}, "no chamber_a/pressure"),
         ({"voltage": None}, "no valve command"),
     ],
 )

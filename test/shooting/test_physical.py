@@ -21,3 +21,12 @@ AXIS = load_model("axis")
 )
 def test_static_friction_is_raised_to_coulomb_friction(names: tuple[str, ...], given: list, found: list) -> None:
     assert physical(AXIS, names, np.array(given)).tolist() == found
+
+
+def test_a_chamber_keeps_volume_at_its_end() -> None:
+    name = "chambers.volume_b"
+    swept = 0.5 * AXIS["piston.stroke"] * AXIS["piston.area_b"]
+    (left,) = physical(AXIS, (name,), np.array([1e-8]))
+    assert swept < left < 1.01 * swept
+    AXIS.with_parameters({name: left}).state()  # a machine that can be
+    assert physical(AXIS, (name,), np.array([1e-3])).tolist() == [1e-3]

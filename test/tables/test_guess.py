@@ -134,3 +134,13 @@ def test_what_is_missing_is_said_with_what_to_type() -> None:
 def test_a_second_candidate_is_named() -> None:
     found = guessed({"t": TIME, "pos 1 (mm)": X, "pos 2 (mm)": 2.0 * X, "force (N)": V})
     assert any("may also be" in sentence and "pos" in sentence for sentence in found.open)
+
+
+def test_a_pressure_that_goes_with_the_speed_is_no_velocity() -> None:
+    """By its name, and without one as it is not 0 where nothing moves; a true velocity without a name is found."""
+    pressure = 3.0e5 + 1.0e5 * V
+    pair = {"t": TIME, "y": X, "pA": pressure, "pB": 6.0e5 - pressure, "u": np.sign(V)}
+    assert taken(guessed(pair)) == {"position": "y", "pressure_a": "pA", "pressure_b": "pB", "command": "u"}
+    named = guessed({"t": TIME, "y": X, "signal 7": pressure, "u": np.sign(V)})
+    assert "velocity" not in named.signals
+    assert taken(guessed({"t": TIME, "y": X, "signal 7": V, "u": np.sign(V)}))["velocity"] == "signal 7"

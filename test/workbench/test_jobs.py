@@ -83,9 +83,9 @@ def test_a_bad_file_says_what_is_wrong_and_a_good_one_is_read(tab: Tab, leaking:
     (tmp_path / "broken.mcap").write_bytes(b"\x89MCAP0\r\n but nothing else")
     choose(tab, "files", [tmp_path / "broken.mcap"])
     tab.see("#bags .problem", "broken.mcap")
-    (tmp_path / "notes.txt").write_text("no recording")
-    choose(tab, "files", [tmp_path / "notes.txt"])
-    tab.see("#upload-says", "notes.txt is no part of a recording")
+    (tmp_path / "notes.pdf").write_text("no recording")
+    choose(tab, "files", [tmp_path / "notes.pdf"])
+    tab.see("#upload-says", "notes.pdf is no part of a recording")
     assert len(tab.complaints) == 1  # the browser reports the refusal
     assert "400" in tab.complaints.pop()
     choose(tab, "a folder", leaking / "train_steps")

@@ -36,7 +36,7 @@ def live(browser: object, tmp_path: Path) -> Iterator[Tab]:
     running = Served(tmp_path)
     tab = Tab(browser, running.address)
     tab.view("Live")
-    tab.page.get_by_label("Namespace").fill("cylinder")
+    tab.page.locator("#namespace").fill("cylinder")
     yield tab
     tab.close()
     assert running.close() == 0
@@ -63,6 +63,8 @@ def test_a_live_axis_is_watched_set_and_recorded(live: Tab) -> None:
         live.page.wait_for_timeout(100)
     assert {"position", "setpoint", "velocity", "pressure a", "pressure b", "voltage"} <= set(shown)
     live.see("#live-status", "cylinder/simulator: ")
+    live.see("#live-says", "Over the last second the model was off by: position ")
+    assert {"predicted position", "predicted pressure a"} <= set(live.page.locator("#live-plot").evaluate(names))
     live.press("Record")
     set_parameter(live, "-5")
     live.see("#set-says", "Refused: ")

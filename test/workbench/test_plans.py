@@ -44,7 +44,15 @@ def test_what_is_left_out_or_broken_takes_no_part() -> None:
 
 def test_the_campaign_is_an_experiment() -> None:
     line = "pneumo experiment constant-voltage --namespace cylinder --out campaign_4 --model axis_1.yaml"
-    assert campaign_plan(BENCH, "cylinder", "campaign_4").shown() == (f"{line} --effects /data/mine.py",)
+    line += " --effects /data/mine.py"
+    assert campaign_plan(BENCH, "cylinder", "campaign_4", "5V").shown() == (f"{line} --read-as bar --closed 5V",)
+
+
+def test_the_campaign_takes_the_rig_file() -> None:
+    """It holds wiring, limits and the signal that closes the valve."""
+    bench = Bench(BAGS, ReadOptions(words=("bar",)), "axis_1.yaml", (), rig="/data/rig.yaml")
+    line = "pneumo experiment constant-voltage --out campaign_4 --model axis_1.yaml --rig /data/rig.yaml"
+    assert campaign_plan(bench, "", "campaign_4").shown() == (line,)
 
 
 def test_a_diagnosis_needs_both_roles() -> None:

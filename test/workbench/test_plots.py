@@ -111,11 +111,14 @@ def test_every_control_has_a_name(tab: Tab) -> None:
     assert tab.page.evaluate(nameless) == []
 
 
-@pytest.mark.parametrize(("width", "scheme"), [pytest.param(1280, "light", marks=pytest.mark.check), (820, "dark")])
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [*(pytest.param(width, "light", marks=pytest.mark.check) for width in (1280, 420)), (820, "dark")],
+)
 def test_nothing_sticks_out(browser: object, served: object, width: int, scheme: str) -> None:
     opened = Tab(browser, served.address, width, scheme)  # type: ignore[attr-defined]  # of the fixture
     try:
-        for name in ("Sliders", "Live", "Save", "Diagnosis", "Signals"):
+        for name in ("Import", "Rig", "Sliders", "Live", "Save", "Diagnosis", "Signals"):
             opened.view(name)
             opened.page.wait_for_timeout(300)
             assert opened.page.evaluate("document.documentElement.scrollWidth") <= width, name

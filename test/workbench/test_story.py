@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 from workbench.leaking import LEAK
 from workbench.tab import Tab
 
@@ -38,7 +39,8 @@ def test_an_effect_is_ticked_and_the_error_falls(tab: Tab, tmp_path: Path, typed
     assert given > refitted > 10.0 * after
     tab.see("#pair table", "cross_piston_leakage.conductance")
     tab.view("Signals")
-    tab.wait_for_traces(lambda found: any(one["name"] == f"model 1 (+ {LEAK})" for one in found))
+    both = {f"model 1 (+ {LEAK})", "model 0 (as given)"}  # before and after in one plot
+    tab.wait_for_traces(lambda found: both <= {one["name"] for one in found})
     machine = saved(tab, tmp_path / "saved.yaml")
     assert load_model(machine).effects[-1] == LEAK
     if typed_too:
@@ -63,7 +65,7 @@ def undone(tab: Tab) -> None:
     assert not tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
     tab.page.get_by_label(f"1: + {LEAK}").check()
     tab.see("#machine", "axis_1.yaml")
-    assert tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
+    expect(tab.page.get_by_label("cross piston leakage", exact=True)).to_be_checked(timeout=60_000)
 
 
 def typed(tab: Tab, machine: Path, folder: Path) -> None:

@@ -18,7 +18,8 @@ def page(pictures: Path) -> str:
     parts = [
         "# Effects\n\nEvery effect that a machine file may list: its equation is the code that is compiled. The "
         "picture shows what it leaves where the default machine lacks it: the residual of each equation over the "
-        "variable that explains most of it (red: more than noise), for a usual size of the effect."
+        "variable that explains most of it (red: more than noise), for a usual size of the effect. Effects that it "
+        "needs, such as the flow law of `path_conductances`, are in both."
     ]
     found = catalogue(machine)
     for place in ORDER:
@@ -38,12 +39,14 @@ def section(effect: type[pn.Effect], machine: pn.Model, pictures: Path) -> str:
         lines.append("\n".join(["| parameter | default | unit | meaning |", "|---|---|---|---|", *rows]))
     if effect.signature:
         lines.append(f"Shows as: {effect.signature}.")
+    if effect.remedy:
+        lines.append(f"At the machine: {effect.remedy}.")
     if effect.source:
         lines.append(f"Source: {effect.source}.")
     if effect.name not in (*FRAME, *machine.effects):
         try:
             signature.draw(effect, pictures / f"{effect.name}.png")
-            lines.append(f"![Residuals of the default machine without {effect.name}](signatures/{effect.name}.png)")
+            lines.append(f"![Residuals of a machine without {effect.name}](signatures/{effect.name}.png)")
         except PneumoError as problem:
             lines.append(f"No picture: {problem}.")
     return "\n\n".join(lines)

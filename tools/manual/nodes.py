@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from pneumo_ros.axis.commission.settings import SETTINGS as COMMISSION
 from pneumo_ros.axis.controller.settings import SETTINGS as CONTROLLER
 from pneumo_ros.axis.experiment.settings import SETTINGS as EXPERIMENT
 from pneumo_ros.axis.identification.settings import SETTINGS as IDENTIFICATION
@@ -13,6 +14,7 @@ NODES = {
     "simulator": ("the plant in the role of a rig", (*FIXED, *LIVE)),
     "controller": ("a control law that moves the piston", CONTROLLER),
     "experiment": ("recorded trials inside the stroke", EXPERIMENT),
+    "commission": ("a new axis from its data sheet to a machine file", COMMISSION),
     "identification": ("parameters from recordings that arrive", IDENTIFICATION),
 }
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 import pneumo_ros as pn
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.dependence import Dependence
+from pneumo_ros.plant.reach import owners_read
 from pneumo_ros.plant.usual import usual_size
 
 SECONDS, RATE = 16.0, 1000.0
@@ -20,6 +21,13 @@ NOISE = {"position": 5e-6, "pressure_a": 300.0, "pressure_b": 300.0}  # m and Pa
 EQUATIONS = {"momentum": ("N", 1.0), "chamber_a": ("mg/s", 1e6), "chamber_b": ("mg/s", 1e6)}
 SCALES = {"Pa": ("bar", 1e-5), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3)}
 PLAIN = 1.5  # times the noise, below which a residual is drawn as one that noise explains
+
+
+def base_of(effect: type[pn.Effect]) -> pn.Model:
+    """The default machine, with the effects whose parameters this one reads."""
+    machine = pn.load_model("axis")
+    listed = {name.partition(".")[0] for name in machine.parameters}
+    return machine.with_effects([*machine.effects, *(owner for owner in owners_read(effect) if owner not in listed)])
 
 
 def with_effect(machine: pn.Model, effect: type[pn.Effect]) -> pn.Model:
@@ -41,8 +49,8 @@ def voltage() -> Any:
 
 
 def draw(effect: type[pn.Effect], path: Path) -> None:
-    """Write the picture of an effect as PNG. Raises PneumoError for an effect that does not fit the default machine."""
-    machine = pn.load_model("axis")
+    """Write the picture of an effect as PNG. Raises PneumoError for an effect that fits no simulated machine."""
+    machine = base_of(effect)
     recording = pn.simulate(with_effect(machine, effect), voltage(), seconds=SECONDS, noise=NOISE)
     found = pn.compare(recording, machine).detail
     figure = Figure(figsize=(9.0, 2.3), layout="constrained")
@@ -56,7 +64,8 @@ def panel(axes: Any, found: Comparison, name: str) -> None:
     unit, scale = EQUATIONS[name]
     ratio = found.equations[name].ratio_to_noise
     axes.axhline(0.0, color="0.7", linewidth=0.8)
-    axes.set_title(f"{name.replace('_', ' ')}: {ratio:.1f} x noise", fontsize=9)
+    title = f"{ratio:.1f} x noise" if np.isfinite(ratio) else "not judged, it did not move"
+    axes.set_title(f"{name.replace('_', ' ')}: {title}", fontsize=9)
     axes.tick_params(labelsize=7)
     if not found.dependences[name]:
         return

@@ -6,6 +6,8 @@ from typing import Any
 from pneumo_ros.axis.controller import guiding
 from pneumo_ros.axis.controller.guiding import limits_of
 from pneumo_ros.axis.priority import PRIORITY
+from pneumo_ros.axis.rig import SETTINGS as RIG
+from pneumo_ros.axis.rig import LiveRig, live_rig, rig_of
 from pneumo_ros.axis.setting import Setting
 from pneumo_ros.control import LAWS, Law, Machine, Reference, ValveInverse
 from pneumo_ros.control.control_file import SMOOTHEST, SMOOTHING
@@ -13,7 +15,8 @@ from pneumo_ros.control.machine import ABSENT, PARAMETERS
 from pneumo_ros.control.reference import constant, sine, steps
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
-from pneumo_ros.plant.library import FRAME, Library
+from pneumo_ros.plant.closed import says_closed
+from pneumo_ros.plant.library import ACTUATORS, FRAME, USUAL_ACTUATOR, Library
 from pneumo_ros.plant.uncertainty import SECTION
 from pneumo_ros.records.contract import JOINT
 
@@ -65,7 +68,7 @@ _GAINS = tuple(
     for law, kind in LAWS.items()
     for name, gain in kind.gains.items()
 )
-SETTINGS = (*_OWN, *_REFERENCE, *guiding.SETTINGS, *_VALVE, *_MACHINE, *_GAINS)
+SETTINGS = (*_OWN, *RIG, *_REFERENCE, *guiding.SETTINGS, *_VALVE, *_MACHINE, *_GAINS)
 
 
 def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
@@ -76,11 +79,12 @@ def gains_of(law: str, values: Mapping[str, Any]) -> dict[str, float]:
 def valve_of(values: Mapping[str, Any]) -> ValveInverse:
     """The inverse of the valve; UsageError if the values do not describe a valve."""
     dead_zone = {name: values[f"dead_zone.{name}"] for name in _DEAD_ZONE}
-    room = values["max_voltage"] - abs(machine_of(values).closed_signal)
+    closed = machine_of(values).closed_signal
+    room = live_rig(values, closed, said=False).room(closed, values["max_voltage"])
     if room <= 0.0:
         raise UsageError(
             f"max_voltage is {values['max_voltage']:g} V, and the valve is closed at "
-            f"{machine_of(values).closed_signal:g} V: there is no room to open it"
+            f"{live_rig(values, closed, said=False).wiring.command(closed):g} V: there is no room to open it"
         )
     return ValveInverse(**dead_zone, smoothing=values["valve.smoothing"], max_voltage=room)
 
@@ -127,10 +131,15 @@ def check(values: Mapping[str, Any]) -> None:
 
 
 def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
-    """Names that a machine file brought along and that no law uses."""
+    """Names that a machine file brought along and that no law uses; UsageError for another actuator than `chambers`."""
     effects = given.get(EFFECTS)
     if effects is None:
         return set()
+    if other := sorted({name.partition(".")[0] for name in given} & {*ACTUATORS} - {USUAL_ACTUATOR}):
+        raise UsageError(
+            f"laws of control need chambers on both sides of the piston; the machine file has a section '{other[0]}'. "
+            f"Give one with a section '{USUAL_ACTUATOR}'"
+        )
     sections = {*FRAME, *effects, SECTION}
     return {name for name in given if name.partition(".")[0] in sections}
 
@@ -143,3 +152,27 @@ def absent(given: Mapping[str, Any]) -> dict[str, float]:
     known = {**ABSENT, "dead_zone.right_limit": 0.0, "dead_zone.left_limit": 0.0}
     listed = {*FRAME, *effects}
     return {n: value for n, value in known.items() if n.partition(".")[0] not in listed and n not in given}
+
+
+def of_a_rig(values: Mapping[str, Any], begun_with: Mapping[str, Any]) -> dict[str, Any]:
+    """Values that the rig file brings along and nobody has given: those of its machine file, and its limits."""
+    rig = rig_of(values)
+    found: dict[str, Any] = {}
+    if rig.machine and EFFECTS not in begun_with:
+        machine = load_model(rig.machine)
+        found = {EFFECTS: list(machine.effects), **machine.parameters}
+        found |= absent(found)
+    if rig.limits:
+        found |= {"limits.low": rig.limits[0], "limits.high": rig.limits[1]}
+    if rig.joint:
+        found["joint_name"] = rig.joint
+    return {name: value for name, value in found.items() if name in values and name not in begun_with}
+
+
+def wired_by(values: Mapping[str, Any], begun_with: Mapping[str, Any]) -> LiveRig:
+    """The rig; the effects that are listed where nobody gives a machine file say nothing of its valve."""
+    machine, given = rig_of(values).machine, EFFECTS in begun_with
+    own = load_model(machine).uncertainty if machine and not given else {}
+    stated = {name.partition(".")[2]: value for name, value in begun_with.items() if name.partition(".")[0] == SECTION}
+    told = (given or bool(machine)) and says_closed(values[EFFECTS], values, {**own, **stated})
+    return live_rig(values, machine_of(values).closed_signal, told)

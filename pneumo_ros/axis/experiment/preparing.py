@@ -2,24 +2,33 @@
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pneumo_ros.axis.rig import rig_of
 from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment.catalogue import make_programme
-from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.experiment.programme import Programme, within
 from pneumo_ros.experiment.programme_file import read_programme
 from pneumo_ros.plant import load_model
 
 
 def prepare(values: Mapping[str, Any], effects_files: tuple[str | Path, ...]) -> tuple[Programme, Path]:
-    """Programme and folder. Raises UsageError when a recording exists already, and what reading programme or machine
-    file raises.
+    """Programme and folder, from parameters and `model_given`: whether somebody chose the machine.
+
+    Raises UsageError when a recording exists already, and what reading programme, machine file or rig file raises.
     """
+    rig = rig_of(values)
     if values["programme"]:
         programme = read_programme(Path(values["programme"]).expanduser())
     else:
-        programme = make_programme(values["experiment"], load_model(values["model"], effects_files))
+        chosen = values["model_given"] or rig.machine
+        model = values["model"] if values["model_given"] or not rig.machine else rig.machine
+        programme = make_programme(values["experiment"], load_model(model, effects_files))
+        if not chosen:  # the default machine is not a word on this rig
+            programme = replace(programme, says_closed=False)
+    programme = within(programme, rig.limits)
     folder = Path(values["output"] or time.strftime("experiment_%Y_%m_%d-%H_%M_%S")).expanduser()
     there = [trial.name for trial in programme.trials if (folder / trial.name).exists()]
     if there:

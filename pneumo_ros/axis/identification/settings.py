@@ -1,5 +1,6 @@
 """Parameters of the identification."""
 
+from pneumo_ros.axis.rig import SETTINGS as RIG
 from pneumo_ros.axis.setting import Setting
 
 SETTINGS = (
@@ -7,6 +8,7 @@ SETTINGS = (
     Setting("folder", "", "folder to watch for more of them, itself or one folder deeper"),
     Setting("axis", "", "namespace of the axis, where a recording holds several"),
     Setting("joint_name", "", "joint of the axis, where a recording holds several and none is called piston"),
+    *(setting for setting in RIG if setting.name != "closed_signal"),
     Setting("model", "axis", "machine file, or name of a shipped one, to start from", live=False),
     Setting("output", "identified", "folder for machine files; each gets a number of its own", live=False),
     Setting("auto", True, "identify as recordings arrive; otherwise only on ~/identify"),

@@ -16,7 +16,9 @@ from pneumo_ros.errors import PneumoError
 from pneumo_ros.identify.campaign import identify
 from pneumo_ros.identify.summary import summary
 from pneumo_ros.plant import Library, Model, model_from_dict
+from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.reading.read import ReadOptions, read_runs
+from pneumo_ros.runs.inputs import check_driven, judged, measuring
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import refit
 
@@ -61,21 +63,24 @@ def plain(value: Any) -> Any:
 def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
     """The result of a job: `machine` and `name` of the model, `files` with effects, `bags`, `whole_model`.
 
-    `axis` and `joint_name` choose where a recording holds several; otherwise they are empty. Raises DataError when no
-    recording can be used, and what identification raises.
+    `axis` and `joint_name` choose where a recording holds several; otherwise they are empty. `words` are those of
+    --read-as. Raises DataError when no recording can be used, and what identification raises.
     """
     begun = time.monotonic()
     parts = PARTS_WITH_REFIT if job["whole_model"] else PARTS
     model = model_from_dict(job["machine"], job["name"], Library(job["files"]))
     runs, refused = read(job, model, report, report.part(*parts[0:2]))
+    given, model = model, measuring(model, runs)
+    check_driven(model, runs)
     found = identify(model, runs, progress=report.part(*parts[1:3]))
     result = summary(found, runs) | {"refused_recordings": refused, "recordings": [run.name for run in runs]}
+    result["judged"] = judged(model, runs)
     after: Model = found.model
     if job["whole_model"]:
         refitted = refit(after, runs, progress=report.part(*parts[2:4]))
         after = refitted.model
         result["refit"] = refit_dict(refitted, [run.name for run in runs])
-    return result | {"machine": after.as_dict(), "took_s": time.monotonic() - begun}
+    return result | {"machine": whole(given, after).as_dict(), "took_s": time.monotonic() - begun}
 
 
 def read(
@@ -85,7 +90,7 @@ def read(
     found = read_runs(
         job["bags"],
         model,
-        ReadOptions(job["axis"] or None, job["joint_name"] or None),
+        ReadOptions(job["axis"] or None, job["joint_name"] or None, tuple(job.get("words", ())), mechanics=True),
         progress=lambda share: progress(share, "reading recordings"),
         note=lambda text: report.line(warning=text),
         refuse=lambda path, reason: report.line(refused=path, reason=reason),

@@ -7,16 +7,21 @@ import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+import numpy as np
+
+from pneumo_ros.axis.simulator.force_input import pushed
 from pneumo_ros.plant import Model
 
 # Numba blocks the interpreter for seconds, so another process compiles into the kernel cache; loading from it takes
 # milliseconds. One sample and its outputs use every function of the kernel that a simulation uses.
 _PROGRAM = """
 import json, sys
+import numpy as np
 from pneumo_ros.plant import Library, model_from_dict
 given = json.load(sys.stdin)
 model = model_from_dict(given["model"], "model", Library(given["files"]))
-model.outputs(model.simulate([0.0], model.state()))
+rest = np.zeros((1, len(model.inputs)))
+model.outputs(model.simulate(rest, model.state()), rest)
 """
 
 
@@ -57,11 +62,13 @@ class Compiler:
                 self._done(model, failure)
 
     def _compile(self, model: Model) -> Exception | None:
+        model = pushed(model)  # as a simulation steps it
         given = json.dumps({"model": model.as_dict(), "files": self._files})
         # a failure there happens again, and is reported, when the kernel is loaded here
         subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
         try:
-            model.outputs(model.simulate([0.0], model.state()))
+            rest = np.zeros((1, len(model.inputs)))
+            model.outputs(model.simulate(rest, model.state()), rest)
         except Exception as failure:  # numba's, about a user's effect: it can be of any class
             return failure
         return None

@@ -1,5 +1,6 @@
 """The sensors: noise of a given seed, and quantisation."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ _BLOCK = 4096  # draws at a time: one draw per sample would cost more than the k
 
 
 class Reading(NamedTuple):
-    """One sample of all sensors: m, m/s (None: not measured), Pa abs."""
+    """One sample of all sensors: m, m/s (None: not measured), Pa abs (NaN: of a side that is no chamber)."""
 
     position: float
     velocity: float | None
@@ -58,4 +59,4 @@ class Sensors:
 
 
 def _rounded(value: float, step: float) -> float:
-    return round(value / step) * step if step > 0.0 else value
+    return round(value / step) * step if step > 0.0 and not math.isnan(value) else value

@@ -13,6 +13,7 @@ FIXED = (
     Setting("joint_name", JOINT, "name of the joint in joint_states", live=False),
     Setting("publish_rate", 500.0, "rate of joint states and pressures", "Hz", 1.0, 1000.0, live=False),
     Setting("step", STEP, "integration step", "s", 1e-6, 1e-3, live=False),
+    Setting("wired_as", "", "wiring of the rig that is played: words such as bar,gauge,swapped-chambers", live=False),
     Setting("seed", 0, "of the sensor noise", "", 0, 2**31 - 1, live=False),
     PRIORITY,
     Setting("start_paused", False, "wait for ~/pause with data: false, so that recorders miss nothing", live=False),
@@ -22,6 +23,10 @@ FIXED = (
         "simulated over real time; 0: as fast as possible, one valve command per measurement (implies publish_clock)",
         "", 0.0, 100.0, live=False,
     ),
+    Setting(
+        "coupled", False, "another simulator moves the rod: coupled/joint_states in, coupled/effort out, its clock",
+        live=False,
+    ),
     Setting("lockstep_wait", 10.0, "longest wait for a controller before lockstep", "s", 0.0, 3600.0, live=False),
     Setting("lockstep_timeout", 1.0, "longest wait for a command in lockstep", "s", 0.01, 3600.0, live=False),
 )  # fmt: skip
@@ -29,6 +34,7 @@ FIXED = (
 LIVE = (
     Setting("command_timeout", 0.1, "simulated age of a command at which the valve closes; 0: never", "s", 0.0, 1e6),
     Setting("max_voltage", 10.0, "commands beyond it are clipped", "V", 0.0, 100.0),
+    Setting("force_timeout", 0.0, "simulated age at which an external force ends; 0: never", "s", 0.0, 1e6),
     Setting("publish_velocity", True, "fill the velocity of joint_states; position sensors do not measure it"),
     Setting("noise_position", 0.0, "standard deviation of the position noise", "m", 0.0, 0.1),
     Setting("noise_pressure", 0.0, "standard deviation of the pressure noise", "Pa", 0.0, 1e5),

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
@@ -50,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, console: Console) -> int:
     """Separate effects and recordings, read, add, print, write."""
     from pneumo_ros.command.adding_json import adding_dict, undetermined
-    from pneumo_ros.command.adding_text import text
+    from pneumo_ros.command.adding_text import headline, text
     from pneumo_ros.diagnose.adding import add, check_addable
     from pneumo_ros.plant import save_model
     from pneumo_ros.plant.mechanical import whole
@@ -67,12 +68,12 @@ def run(options: argparse.Namespace, console: Console) -> int:
         found = add(model, effects, train, held, progress=progress, horizon=options.horizon)
     result: dict[str, Any] = adding_dict(found)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
+    result["headline"] = headline(result)
     console.say(text(result))
     save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
     console.note(f"Machine file written to {options.out}")
     judged = shlex.join((options.holdout or options.bags)[:2])
-    own = "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
-    console.next(f"compare {judged} --model {shlex.quote(options.out)}{own}")
+    console.next(f"compare {judged}{again(options, options.out)}")
     console.json(result)
     report.publish(console, lambda origin: _report(found, result, origin))
     return 1 if undetermined(result) else 0
@@ -106,8 +107,8 @@ def _neither(name: str, known: Sequence[str]) -> str:
 
 
 def _report(found: "Adding", result: dict[str, Any], origin: dict[str, Any]) -> Any:
-    """The page of `compare` for the model with the effects."""
-    from pneumo_ros.report.comparison import comparison_report
+    """One page on what was added, then the page of `compare` for the model with the effects."""
+    from pneumo_ros.report.adding import adding_report
 
     compared = plain(found.after.as_dict() | {"refit": result["refit"], "added": result["added"]})
-    return comparison_report(compared, found.after, found.model, origin)
+    return adding_report(found, result, compared, origin)

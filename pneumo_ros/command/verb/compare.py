@@ -10,12 +10,14 @@ import io
 import shlex
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.command.again import again, parted
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, columns, plain
 from pneumo_ros.command.recordings import read_named, unfolded
 from pneumo_ros.command.refitting import add_refit, refit_text, refitted
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.compare.findings import findings, verdict
+from pneumo_ros.compare.typical import typical_error
 from pneumo_ros.compare.wording import EQUATIONS, SIGNALS, TARGETS
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
@@ -39,7 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "bags", nargs="+", metavar="BAG", help="recordings: rosbag2 folders or .mcap files, or folders of these"
     )
-    parser.add_argument("--horizon", type=float, default=1.0, metavar="S", help="length of the windows (default: 1 s)")
+    parser.add_argument(
+        "--horizon", type=float, metavar="S", help="length of the windows (default: 1 s, or shorter runs)"
+    )
     add_recordings(parser)
     add_refit(parser)
     add_model(parser)
@@ -53,7 +57,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     """Read, refit if asked, compare, print, write."""
     from pneumo_ros.compare.compare import compare
 
-    if not options.horizon > 0.0:
+    if options.horizon is not None and not options.horizon > 0.0:
         raise UsageError(f"--horizon {options.horizon:g} is not a length of time; give seconds, such as --horizon 1")
     options.bags, options.fit = unfolded(options.bags), options.fit and unfolded(options.fit)
     report = prepare_report(options)
@@ -65,6 +69,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     with console.progress("Comparing") as progress:
         comparison = compare(model, runs, options.horizon, lambda share, _: progress(share))
     result: dict[str, Any] = plain(comparison.as_dict() | ({"refit": refit} if refit else {}))
+    result |= {"typical_error": typical_error(result["runs"]), "headline": verdict(result)}
     _print(console, model, comparison, result)
     console.json(result)
     if options.series:
@@ -77,14 +82,16 @@ def run(options: argparse.Namespace, console: Console) -> int:
 def _next(options: argparse.Namespace, model: "Model", comparison: "Comparison") -> str:
     """Look for what is missing where an equation fails; else use the model."""
     machine = options.out or options.model
-    named = "" if machine == "axis" else f" --model {shlex.quote(machine)}"
-    named += "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
+    own = "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
+    named = ("" if machine == "axis" else f" --model {shlex.quote(machine)}") + own
+    how = again(options, options.out)
     fails = any(one.explained_by_noise is False for one in comparison.equations.values())
     if fails and len(options.bags) > 1:
-        return f"diagnose {shlex.join(options.bags[:-1])} --holdout {shlex.quote(options.bags[-1])}{named}"
+        fitted, held = parted(options.bags)
+        return f"diagnose {shlex.join(fitted)} --holdout {shlex.join(held)}{how}"
     if fails:
-        return f"diagnose OTHER_BAG... --holdout {shlex.quote(options.bags[0])}{named}"
-    return f"effects{named}" if model.force_driven else f"tune{named} --out my_cascade.yaml"
+        return f"diagnose OTHER_BAG... --holdout {shlex.quote(options.bags[0])}{how}"
+    return f"tune{named} --out my_cascade.yaml" if len(model.chambers) > 1 else f"effects{named}"
 
 
 def _write_series(comparison: "Comparison", path: str) -> None:

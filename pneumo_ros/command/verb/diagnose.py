@@ -17,6 +17,7 @@ import shlex
 import time
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
@@ -68,6 +69,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.command.suggesting import cannot_say, suggested
     from pneumo_ros.plant import save_model
     from pneumo_ros.plant.mechanical import whole
+    from pneumo_ros.wording.diagnosis import headline
 
     check_machine_file(options)
     require_holdout(options, "diagnose", console)
@@ -86,13 +88,15 @@ def run(options: argparse.Namespace, console: Console) -> int:
     result: dict[str, Any] = diagnosis_dict(outcome, estimates, experiment)
     result["cannot_say"] = cannot_say(outcome)
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
+    result["headline"] = headline(result)
     console.say(text(result))
     if options.out:
         save_model(whole(given, outcome.model), options.out, overwrite=options.overwrite)
-        console.note(f"{_what(outcome)} written to {options.out}; see also: {_next(options)}")
+        console.note(f"{_what(outcome)} written to {options.out}")
+        console.next(f"compare {shlex.join(options.holdout[:2])}{again(options, options.out)}")
     else:
         named = [*options.bags, "--holdout", *options.holdout]
-        console.next(f"diagnose {shlex.join(named)} --model {options.model} --out better.yaml   # the machine file")
+        console.next(f"diagnose {shlex.join(named)}{again(options)} --out better.yaml   # the machine file")
     console.json(result)
     report.publish(console, lambda origin: _report(outcome, result, origin))
     if outcome.interrupted:
@@ -124,15 +128,18 @@ def untried(model: "Model") -> list[str]:
 def unseen(model: "Model", runs: "Sequence[Run]") -> dict[str, list[str]]:
     """Effects that are not tried because a recording lacks a signal that they read, and the topics of these signals.
 
-    An effect of a load cell is not named where no recording has one: most machines have none.
+    An effect of a load cell or another sensor beside the supply's is not named where no recording has one: most
+    machines have none.
     """
     from pneumo_ros.diagnose.hypothesis import unmeasured
-    from pneumo_ros.runs.inputs import measured_inputs
+    from pneumo_ros.measured import MEASURED
+    from pneumo_ros.runs.inputs import IN_PLACE, measured_inputs
     from pneumo_ros.runs.run import SENSORS
 
     lacking = unmeasured(model, measured_inputs(runs)).items()
     some = {name for run in runs for name in run.further}
-    return {name: [SENSORS[one] for one in own] for name, own in lacking if own != ("load_force",) or {*own} <= some}
+    rare = {one.input for one in MEASURED} - {*IN_PLACE}
+    return {name: [SENSORS[one] for one in own] for name, own in lacking if not rare.issuperset(own) or {*own} <= some}
 
 
 def diagnosed(
@@ -180,12 +187,6 @@ def _what(outcome: "Outcome") -> str:
     if outcome.added:
         return f"Machine with {' and '.join(one.effect for one in outcome.added)}"
     return "Refitted machine, without any effect added,"
-
-
-def _next(options: argparse.Namespace) -> str:
-    bags = " ".join(options.holdout[:2] + ["..."] * (len(options.holdout) > 2))
-    effects = "".join(f" --effects {path}" for path in options.effects)
-    return f"pneumo compare {bags} --model {options.out}{effects}"
 
 
 def _report(outcome: "Outcome", result: dict[str, Any], origin: dict[str, Any]) -> Any:

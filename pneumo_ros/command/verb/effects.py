@@ -70,6 +70,8 @@ def explanation(effect: "type[Effect]", model: "Model") -> str:
     parts = [f"{effect.name}  ({room(effect)})", inspect.cleandoc(effect.__doc__ or "")]
     if effect.signature:
         parts.append(f"Recognised by: {effect.signature}")
+    if effect.remedy:
+        parts.append(f"At the machine: {effect.remedy}")
     if effect.source:
         parts.append(f"Source: {effect.source}")
     for name in ("equations", "advance"):

@@ -14,10 +14,11 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pneumo_ros.command.arguments import add_model, add_output, chosen_model
+from pneumo_ros.command.arguments import add_closed, add_model, add_output, add_wiring, chosen_model
 from pneumo_ros.command.chart import chart
 from pneumo_ros.command.conducting import conduct
 from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.live_rig import declared, live_settings
 from pneumo_ros.environment import require_ros
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
@@ -58,6 +59,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--timeout", type=float, default=TIMEOUT, metavar="MS",
         help=f"silence of the plant that ends the experiment (default: {TIMEOUT:g} ms)",
     )  # fmt: skip
+    add_closed(parser)
+    add_wiring(parser)
     add_model(parser)
     add_output(parser)
 
@@ -75,6 +78,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.json({"schema_version": 1, **separated})
         return 1
     rehearsal = _rehearsed(programme, options)
+    if "end stop" in rehearsal.aborted and not (options.voltages or Path(options.name or "").suffix in FORMATS):
+        programme, rehearsal = _smaller(programme, rehearsal, options, console)
     if not dry:
         return _live(options, console, programme, rehearsal, separated)
     console.say(plan_text(programme, rehearsal))
@@ -93,6 +98,12 @@ def _check(options: argparse.Namespace) -> None:
         raise UsageError(f"--write {options.write}: it takes a name that ends in {', '.join(FORMATS)}")
     if options.write:
         check_writable(options.write)
+    from pneumo_ros.reading.rig_file import VOLTS, quantity
+    from pneumo_ros.records.corrections import parse_words
+
+    parse_words(options.read_as)
+    if options.closed is not None:
+        quantity(options.closed, VOLTS, "--closed", "5V")
     if not (math.isfinite(options.timeout) and options.timeout > 0.0):
         raise UsageError(f"--timeout is {options.timeout:g} ms; it takes a number above 0")
 
@@ -115,7 +126,8 @@ def _named(options: argparse.Namespace) -> "Programme":
     from pneumo_ros.experiment.programme_file import read_programme
 
     if Path(options.name).suffix not in FORMATS[:2]:
-        return make_programme(options.name, chosen_model(options), options.voltages, options.seconds)
+        made = make_programme(options.name, chosen_model(options), options.voltages, options.seconds)
+        return declared(made, options)
     if options.voltages or options.seconds is not None:
         raise UsageError(f"--voltages and --seconds are not for a programme file; change them in {options.name}")
     return read_programme(options.name)
@@ -136,7 +148,8 @@ def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[
     found, most = best(ranked, by_hand=dry or options.prepared), best(ranked)
     if most is not None and found is not most:
         console.note(f"{most.offer.name} needs a preparation ({most.offer.prepare}) and --prepared; not done now")
-    return found.offer.programme if found else None, separation_dict(ranked, options.separate, noise, sentence)
+    chosen = declared(found.offer.programme, options) if found else None
+    return chosen, separation_dict(ranked, options.separate, noise, sentence)
 
 
 def _rehearsed(programme: "Programme", options: argparse.Namespace) -> "Rehearsal":
@@ -146,6 +159,29 @@ def _rehearsed(programme: "Programme", options: argparse.Namespace) -> "Rehearsa
 
     model = chosen_model(options)
     return rehearse(programme, conditions(programme, model).held(model))
+
+
+def _smaller(
+    programme: "Programme", rehearsal: "Rehearsal", options: argparse.Namespace, console: Console
+) -> "tuple[Programme, Rehearsal]":
+    """The programme without the constant voltages that take the model to an end stop, or with all voltages smaller."""
+    from dataclasses import replace
+
+    from pneumo_ros.commission.moves import safe
+
+    trials = programme.trials
+    for kept in range(len(rehearsal.outcomes) // 2 * 2, 0, -2) if programme.experiment == "constant-voltage" else ():
+        less = replace(programme, trials=trials[:kept])
+        if not (rehearsed := _rehearsed(less, options)).aborted:
+            if kept < len(trials):
+                left_out = ", ".join(one.voltage.text for one in trials[kept:])
+                console.note(f"Left out, as the model would reach an end stop: {left_out}")
+            return less, rehearsed
+    found = safe(programme, [chosen_model(options)])
+    if found is None:
+        return programme, rehearsal
+    console.note("With smaller voltages, as the model would reach an end stop")
+    return found, _rehearsed(found, options)
 
 
 def _write(path: str, programme: "Programme", rehearsal: "Rehearsal") -> None:
@@ -208,7 +244,8 @@ def _live(
     folder = Path(options.out) if options.out else _next_folder()
     console.note(f"{len(programme.trials)} trials, about {_minutes(rehearsal.duration)}; Ctrl-C closes the valve")
     began = time.monotonic()
-    settings = {"output": str(folder.resolve()), "joint_name": options.joint}
+    settings: dict[str, object] = {"output": str(folder.resolve()), "joint_name": options.joint}
+    settings |= live_settings(options)
     settings["measurement_timeout"] = float(1e-3 * options.timeout)
     code, result = conduct(programme, settings, options.namespace.strip("/"), console)
     if code == 0:

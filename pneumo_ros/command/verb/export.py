@@ -1,6 +1,7 @@
-"""Write a machine for other programs: a functional mock-up unit (FMI), or C99 for a controller."""
+"""Write a machine for other programs: a functional mock-up unit (FMI), C99 for a controller, or MJCF."""
 
 import argparse
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,18 +14,20 @@ from pneumo_ros.nearest import unknown_name
 if TYPE_CHECKING:
     from pneumo_ros.plant import Model
 
-ENDINGS = {"fmu": ".fmu", "c": ".c"}
+ENDINGS = {"fmu": ".fmu", "c": ".c", "mjcf": ".xml"}
 FMI = ("3", "2")
 
 EXAMPLES = (
     "pneumo export fmu my.yaml --out axis.fmu",
     "pneumo export c my.yaml --out axis.c",
+    "pneumo export mjcf my.yaml --out axis.xml",
 )  # parsed by a test
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """FORMAT, MODEL, --out, --fmi and the common options."""
-    parser.add_argument("format", metavar="fmu|c", help="fmu: for other simulators; c: one C99 file and its header")
+    formats = "fmu: for other simulators; c: one C99 file and its header; mjcf: the mechanism for MuJoCo"
+    parser.add_argument("format", metavar="fmu|c|mjcf", help=formats)
     parser.add_argument("machine", metavar="MODEL", help="machine file, or the name of a shipped one")
     parser.add_argument("--out", required=True, metavar="FILE", help="file to write, such as axis.fmu or axis.c")
     parser.add_argument("--fmi", metavar="VERSION", help="of the standard, for fmu: 3 (default) or 2")
@@ -41,11 +44,25 @@ def run(options: argparse.Namespace, console: Console) -> int:
     version = int(options.fmi or FMI[0])
     if options.format == "fmu":
         console.note(f"Compiling {model.name} for FMI {version}.0")
-    files = _write_c(model, target) if options.format == "c" else _write_fmu(model, target, version)
+    files = _written(options, model, target, version)
     console.say(f"{model.name} written to {' and '.join(map(str, files))}")
     told = {"schema_version": 1, "model": model.name, "format": options.format, "files": [str(f) for f in files]}
-    console.json(told if options.format == "c" else {**told, "fmi": version})
+    machine = "" if options.machine == "axis" else f" --model {shlex.quote(options.machine)}"
+    console.next(f"simulate{machine} --input step:2@1 --out reference   # the same machine here, to compare with")
+    console.json({**told, "fmi": version} if options.format == "fmu" else told)
     return 0
+
+
+def _written(options: argparse.Namespace, model: "Model", target: Path, version: int) -> list[Path]:
+    """Write the files; their paths."""
+    if options.format == "c":
+        return _write_c(model, target)
+    if options.format == "fmu":
+        return _write_fmu(model, target, version)
+    from pneumo_ros.export.mjcf import mjcf_text
+
+    write_whole(target, mjcf_text(model, options.machine))
+    return [target]
 
 
 def _target(options: argparse.Namespace) -> Path:

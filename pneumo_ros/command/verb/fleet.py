@@ -36,6 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_executor(parser)
     parser.add_argument("--results", metavar="FILE", help="keep what is computed, and do not compute it again")
     parser.add_argument("--identify-only", action="store_true", help="do not look for effects: much faster")
+    parser.add_argument(
+        "--rig", dest="rig_file", metavar="RIG.yaml", help="wiring of machines without a rig.yaml of their own"
+    )
     add_model(parser)
     add_report(parser)
     add_output(parser)
@@ -79,7 +82,11 @@ def _examined(
 
     model, effects = model_for_workers(options)
     by_key = {campaign.fingerprint: campaign for campaign in found}
-    jobs = {key: (_paths(c), _model(c, model), effects, not options.identify_only) for key, c in by_key.items()}
+    rig = str(Path(options.rig_file).resolve()) if options.rig_file else ""
+    jobs = {
+        key: (_paths(c), _model(c, model), effects, not options.identify_only, _rig(c, rig))
+        for key, c in by_key.items()
+    }
     results = {}
     with open_pool(options.executor) as pool, console.progress("Examining") as progress:
         for done in sweep(examine, jobs, pool, journal):
@@ -99,8 +106,18 @@ def _paths(campaign: "Campaign") -> list[str]:
     return [str(path.resolve()) for path in campaign.paths]
 
 
+def _rig(campaign: "Campaign", other: str) -> str:
+    return other if campaign.rig_file is None else str(campaign.rig_file.resolve())
+
+
 def _model(campaign: "Campaign", other: str) -> str:
-    return other if campaign.machine_file is None else str(campaign.machine_file.resolve())
+    """The machine file of a campaign: its own, else that of its rig file."""
+    from pneumo_ros.command.rig_file import read_rig
+
+    if campaign.machine_file is not None:
+        return str(campaign.machine_file.resolve())
+    named = read_rig(str(campaign.rig_file)).machine if campaign.rig_file else ""
+    return str(Path(named).resolve()) if named and Path(named).is_file() else named or other
 
 
 def _journal(options: argparse.Namespace) -> "Journal":
@@ -111,4 +128,6 @@ def _journal(options: argparse.Namespace) -> "Journal":
 
     texts = [Path(path).read_text(encoding="utf-8", errors="replace") for path in options.effects]
     purpose = {"version": __version__, "model": read_machine(options.model)[1], "effects": texts}
+    if options.rig_file:
+        purpose["rig"] = Path(options.rig_file).read_text(encoding="utf-8")
     return Journal(options.results, purpose | {"identify_only": options.identify_only})

@@ -3,18 +3,21 @@
 The command finds stretches of constant velocity and constant pressures in the recordings. There the pressures give the
 friction force: the static map, which gives Coulomb friction and drag. Static friction and Stribeck velocity come from
 the force at which the piston breaks away and from how it starts to move, the flow coefficients from the mass balance,
-the bristle stiffness from presliding. A parameter that the recordings do not determine keeps its value, a sentence says
+the bristle stiffness from presliding. Machines with on/off valves or regulators are fitted to any motion instead, all
+parameters together. A parameter that the recordings do not determine keeps its value, a sentence says
 so, and the exit code is 1. BAG may be a folder: all recordings in it are read.
 """
 
 import argparse
+import shlex
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.identification_text import text
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
-from pneumo_ros.command.recordings import expanded, read_expanded
+from pneumo_ros.command.recordings import expanded, measuring, read_expanded
 from pneumo_ros.command.reporting import add_report, prepare_report
 
 if TYPE_CHECKING:
@@ -42,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_report(parser)
     add_output(parser)
+    parser.set_defaults(mechanics=True)
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
@@ -50,7 +54,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.identify.directions import by_direction
     from pneumo_ros.identify.summary import summary
     from pneumo_ros.plant import save_model
+    from pneumo_ros.plant.mechanical import whole
     from pneumo_ros.report.identification import identification_report
+    from pneumo_ros.runs.inputs import check_driven
 
     check_machine_file(options)
     paths = expanded(options.bags, console)
@@ -58,6 +64,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     report = prepare_report(options)
     model = _with_added(chosen_model(options), options)
     runs, passed = read_expanded(paths, options, console, model)
+    given, model = model, measuring(model, runs, console)
+    check_driven(model, runs)
     with console.progress("Identifying") as progress:
         found = identify(model, runs, progress=lambda share, _: progress(share))
     result: dict[str, Any] = summary(found, runs)
@@ -66,11 +74,19 @@ def run(options: argparse.Namespace, console: Console) -> int:
     result = plain(result | {"passed_over": passed, "machine_file": options.out, "provenance": report.origin()})
     console.say(text(result, options.verbose))
     if options.out:
-        save_model(found.model, options.out, overwrite=options.overwrite)
-        console.note(f"Machine file written to {options.out}; see also: pneumo compare BAG... --model {options.out}")
+        save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
+        console.note(f"Machine file written to {options.out}")
+    console.next(_next(options))
     console.json(result)
     report.publish(console, lambda origin: identification_report(result, found.model, origin))
     return 1 if found.undetermined else 0
+
+
+def _next(options: argparse.Namespace) -> str:
+    """See how the identified machine predicts; without a machine file, write it."""
+    if options.out:
+        return f"compare {shlex.join(options.bags[:2])}{again(options, options.out)}"
+    return f"identify {shlex.join(options.bags)}{again(options)} --out my.yaml   # the machine file"
 
 
 def _with_added(model: "Model", options: argparse.Namespace) -> "Model":

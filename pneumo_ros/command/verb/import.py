@@ -105,7 +105,7 @@ def _import(options: argparse.Namespace, console: Console) -> int:
             console.note(f"Passed over: {problem}")
     console.json({"schema_version": 1, "imported": done, "passed_over": problems})
     look = str(done[0]["bag"] if len(goals) == 1 else options.out)
-    console.say(f"Look at it with: {program()} view {shlex.quote(look)}")
+    console.next(f"view {shlex.quote(look)}")
     return int(bool(problems))
 
 

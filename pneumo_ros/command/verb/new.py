@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_output
 from pneumo_ros.command.asking import asked
-from pneumo_ros.command.console import Console, program
+from pneumo_ros.command.console import Console
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.making_text import file_text, record, said
 from pneumo_ros.command.verb.parts import add_parts
@@ -41,7 +41,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--valve-flow", metavar="FLOW", help="of its data sheet: 'qn 700 l/min', 'C 2.8, b 0.3', 'Kv 0.4'"
     )
-    parser.add_argument("--signal", metavar="LOW,CLOSED,HIGH", help="of a proportional valve, in volts, such as 0,5,10")
+    parser.add_argument(
+        "--signal",
+        metavar="LOW,CLOSED,HIGH",
+        help="of a proportional valve, in volts, or mA over 500 ohm: 0,5,10 or 4,12,20mA",
+    )
     parser.add_argument(
         "--supply", metavar="PRESSURE", help="6barg, 0.6 MPa, 87 psi (gauge); 7bara, 101psia (absolute)"
     )
@@ -81,10 +85,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.say(said(made, result))
     for caution in made.cautions:
         console.note(f"Caution: {caution}")
-    run_it = (
-        f"{program()} simulate --model {shlex.quote(options.out)} --input constant:{made.signal[0]:g} --out first_run"
-    )
-    console.say(f"Machine file written to {options.out}; run it with: {run_it}")
+    console.say(f"Machine file written to {options.out}")
+    console.next(f"simulate --model {shlex.quote(options.out)} --input constant:{made.signal[0]:g} --out first_run")
     console.json(result)
     return 0
 

@@ -8,15 +8,18 @@ combinations explain the recording alike.
 """
 
 import argparse
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import add_model, add_output, chosen_model
-from pneumo_ros.command.console import Console, columns, program
+from pneumo_ros.command.console import Console, columns
+from pneumo_ros.command.rig_file import rig_text
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
 
 if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
     from pneumo_ros.reading.rig_guess import Guess, Hypothesis
 
 EXAMPLES = (
@@ -50,14 +53,28 @@ def run(options: argparse.Namespace, console: Console) -> int:
         found = guess_rig(recording, model)
     console.say(text(found, recording.name, model.name))
     if options.out:
-        write_whole(options.out, rig_text(options, found.best, recording.joint_name))
-        console.note(f"Written to {options.out}; type: {program()} compare {options.bag} --rig {options.out}")
+        origin = f"From {Path(options.bag).name}: check each line."
+        words, joint = found.best.words, recording.joint_name
+        content = rig_text(options.model, options.namespace or "", joint, words, origin, _closed(words, model))
+        write_whole(options.out, content)
+        console.note(f"Written to {options.out}")
+        console.next(f"compare {shlex.quote(options.bag)} --rig {shlex.quote(options.out)}")
     elif found.best.words:
-        console.note(
-            f"type: {program()} compare {options.bag} --model {options.model} --read-as {','.join(found.best.words)}"
-        )
+        how = f"--model {shlex.quote(options.model)} --read-as {','.join(found.best.words)}"
+        console.next(f"compare {shlex.quote(options.bag)} {how}")
     console.json(as_dict(found))
     return 0 if found.certain else 1
+
+
+def _closed(words: tuple[str, ...], model: "Model") -> float | None:
+    """The signal [V] that closes the valve, where the recording or the machine file shows it."""
+    from pneumo_ros.plant.closed import closed_signal, says_closed
+    from pneumo_ros.records.corrections import wiring
+
+    shown = says_closed(model.effects, model.parameters, model.uncertainty) or any(
+        word.startswith("closed=") for word in words
+    )
+    return wiring(words).command(closed_signal(model)) if shown else None
 
 
 def text(found: "Guess", recording: str, machine: str) -> str:
@@ -89,18 +106,3 @@ def as_dict(found: "Guess") -> dict[str, Any]:
             for one in found.ranked[:SHOWN]
         ],
     }  # fmt: skip
-
-
-def rig_text(options: argparse.Namespace, best: "Hypothesis", joint: str) -> str:
-    """The rig file."""
-    machine = options.model
-    if Path(machine).is_file():
-        machine = str(Path(machine).resolve())
-    return (
-        f"# A rig: its machine, and the wiring of its recordings. From {Path(options.bag).name}: check each line.\n"
-        "rig:\n"
-        f"  machine: {machine}\n"
-        f"  namespace: {options.namespace or ''}\n"
-        f"  joint: {joint}\n"
-        f"  read_as: {','.join(best.words)}  # as --read-as: units, gauge, swapped, reversed, zero, closed signal\n"
-    )

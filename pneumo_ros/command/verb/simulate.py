@@ -2,12 +2,14 @@
 
 import argparse
 import math
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros import __version__
-from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
-from pneumo_ros.command.console import Console, columns, program
+from pneumo_ros.command.again import again
+from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_machine, chosen_model
+from pneumo_ros.command.console import Console, columns
 from pneumo_ros.command.inputs import FORMS, parse_drive
 from pneumo_ros.command.recordings import read_one
 from pneumo_ros.errors import UsageError
@@ -15,19 +17,30 @@ from pneumo_ros.files import check_new_folder
 
 if TYPE_CHECKING:
     from pneumo_ros.command.playing import Plan
+    from pneumo_ros.multiaxis import Machine
     from pneumo_ros.plant import Model
 
 EXAMPLES = (
     "pneumo simulate --input step:2.5@1 --seconds 5 --out step_run",
     "pneumo simulate --input sine:3,0.5 --seconds 20 --model my.yaml --out sine_run",
     "pneumo simulate --input step_run --model better.yaml --out again   # the commands of a recording",
+    "pneumo simulate --input shoulder=step:2.5@1 --input elbow=sine:3,0.5 --model two.yaml --out both",
 )  # parsed by a test
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--input, --out, duration, rate and start."""
     new = "folder of the new recording; it must not exist yet"
-    parser.add_argument("--input", required=True, metavar="SPEC", help=f"input of the valve: {FORMS}")
+    parser.add_argument(
+        "--input", required=True, action="append", metavar="SPEC",
+        help=f"input of the valve: {FORMS}; with several axes shoulder=SPEC, once for each that moves, or a recording",
+    )  # fmt: skip
+    parser.add_argument(
+        "--input-b",
+        action="append",
+        metavar="SPEC",
+        help="input of the valve of chamber b, where there are two (default: against --input)",
+    )
     parser.add_argument("--out", required=True, metavar="BAG", help=new)
     parser.add_argument("--seconds", type=float, metavar="S", help="how long (default: the input, else 10)")
     parser.add_argument("--rate", type=float, metavar="HZ", help="samples per second (default: 1000)")
@@ -43,7 +56,12 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.records.writing import write_recording
 
     check_new_folder(options.out)
+    _check_numbers(options)
+    if machine := chosen_machine(options):
+        return _run_axes(machine, options, console)
     model = chosen_model(options)
+    options.input = _only(options.input, "--input", model)
+    options.input_b = options.input_b and _only(options.input_b, "--input-b", model)
     plan = make_plan(options, model, console)
     with console.progress("Simulating") as progress:
         states = played(model, plan, progress)
@@ -53,7 +71,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     write_recording(options.out, **signals, **plan.commands, description=description)
     console.say(f"Simulated {model.name} for {plan.samples * plan.sample_time:g} s: {plan.text}")
     console.say(columns(extremes(signals), right=(1, 2, 3, 4)))
-    console.say(f"Written to {options.out}; see also: {program()} compare {options.out}")
+    console.say(f"Written to {options.out}")
+    console.next(f"compare {shlex.quote(str(options.out))}{again(options)}")
     console.json(
         {
             "schema_version": 1,
@@ -67,15 +86,60 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-def make_plan(options: argparse.Namespace, model: "Model", console: Console) -> "Plan":
-    """What the options ask for; UsageError for lengths and rates that make no sense."""
-    from pneumo_ros.command.playing import drive_plan, replay_plan
+def _run_axes(machine: "Machine", options: argparse.Namespace, console: Console) -> int:
+    """The same for a machine of several axes: one recording, each axis under its prefix."""
+    from pneumo_ros.command.axes_playing import axes_plans, played_together, write_together
 
+    plans = axes_plans(machine, options, console)
+    first = next(iter(plans.values()))
+    with console.progress("Simulating") as progress:
+        states = played_together(machine, plans, progress)
+    console.note(f"Writing {len(states)} samples to {options.out}")
+    signals = write_together(options.out, machine, plans, states)
+    console.say(f"Simulated {machine.name} for {first.samples * first.sample_time:g} s")
+    for axis, one in signals.items():
+        console.say(f"\n{axis}/: {plans[axis].text}\n{columns(extremes(one), right=(1, 2, 3, 4))}")
+    if machine.supply is not None:
+        console.say(f"\nThe supply drops by up to {1e-5 * states[:, -1].max():.3g} bar")
+    console.say(f"Written to {options.out}")
+    console.next(f"compare {shlex.quote(str(options.out))}{again(options)}")
+    final = {
+        name: dict(zip(machine.axes[name].states, x[-1], strict=True)) for name, x in machine.split(states).items()
+    }
+    console.json(
+        {
+            "schema_version": 1,
+            "model": machine.name,
+            "recording": options.out,
+            "samples": len(states),
+            "duration_s": first.samples * first.sample_time,
+            "axes": {name: {"final_state": state} for name, state in final.items()},
+        }
+    )
+    return 0
+
+
+def _check_numbers(options: argparse.Namespace) -> None:
     for name, value in (("--seconds", options.seconds), ("--rate", options.rate)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise UsageError(f"{name} is {value:g}; it takes a number above 0")
+
+
+def _only(given: list[str], option: str, model: "Model") -> str:
+    """The one value that a machine of one axis takes."""
+    if len(given) > 1:
+        raise UsageError(f"'{model.name}' has one axis; give {option} once, not {len(given)} times")
+    return given[0]
+
+
+def make_plan(options: argparse.Namespace, model: "Model", console: Console) -> "Plan":
+    """What the options ask for; UsageError for options that do not go together."""
+    from pneumo_ros.command.playing import drive_plan, replay_plan
+
     path = Path(options.input)
     if path.is_dir() or path.suffix in (".mcap", ".db3"):
+        if options.input_b:
+            raise UsageError("leave out --input-b: a replay takes both commands from its recording")
         reading = read_one(options.input, options, console, model)
         if options.rate is not None:
             kept = 1.0 / reading.recording.sample_time
@@ -84,7 +148,10 @@ def make_plan(options: argparse.Namespace, model: "Model", console: Console) -> 
     if options.namespace or options.joint or options.read_as:
         raise UsageError(f"--namespace, --joint and --read-as go with a recording; --input is {options.input}")
     drive = parse_drive(options.input)
-    return drive_plan(model, drive, seconds=options.seconds, rate=options.rate, position=options.position or 0.0)
+    second = parse_drive(options.input_b) if options.input_b else None
+    return drive_plan(
+        model, drive, seconds=options.seconds, rate=options.rate, position=options.position or 0.0, second=second
+    )
 
 
 UNITS = {"position": "m", "velocity": "m/s", "effort": "N", "pressure_a": "Pa", "pressure_b": "Pa"}

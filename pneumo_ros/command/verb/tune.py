@@ -6,7 +6,7 @@ from dataclasses import astuple
 from typing import TYPE_CHECKING
 
 from pneumo_ros.command.arguments import add_executor, add_model, add_output, chosen_model, model_for_workers
-from pneumo_ros.command.console import Console, columns, program
+from pneumo_ros.command.console import Console, columns
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
 from pneumo_ros.nearest import unknown_name
@@ -44,20 +44,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """Tune, write the control file, print the cost and the changes."""
-    from pneumo_ros.command.rated_motions import task_for
+    from pneumo_ros.command.rated_motions import reached, task_for
     from pneumo_ros.control.control_file import Control
-    from pneumo_ros.plant.closed import centred
+    from pneumo_ros.plant.closed import centred, check_one_command
 
     _check(options)
     start, model = _start(options), chosen_model(options)
     if model.force_driven:
         raise UsageError(f"{model.name} has no valve to control; give a machine file with a section 'chambers'")
+    model.require_two_chambers("a law of control")
+    check_one_command(model)
     model = centred(model)  # laws count their voltages from the closed signal
     task = task_for(model, options.amplitude, options.frequency, options.step)
     search = _search(options, start, model, task, console)
     found = Control(start.law, {**start.gains, **search.gains}, start.smoothing)
     write_whole(options.out, found.text(_heading(start.law, model, task, options.spool)))
-    _tell(options, start, model, search, console)
+    _tell(options, start, model, search, console, reached(model, task, found.make(model.effects, model.parameters)))
     return 0
 
 
@@ -110,7 +112,14 @@ def _heading(law: str, model: "Model", task: "Task", spool: float | None) -> str
     )
 
 
-def _tell(options: argparse.Namespace, start: "Control", model: "Model", search: "Search", console: Console) -> None:
+def _tell(
+    options: argparse.Namespace,
+    start: "Control",
+    model: "Model",
+    search: "Search",
+    console: Console,
+    errors: tuple[float, float],
+) -> None:
     from pneumo_ros.control import LAWS
 
     gains = LAWS[start.law].gains
@@ -118,8 +127,11 @@ def _tell(options: argparse.Namespace, start: "Control", model: "Model", search:
     rows = [(n, f"{before[n]:g}", f"{search.gains[n]:g}", gains[n].unit) for n in search.gains]
     console.say(f"Tuned {start.law} for {model.name}: cost {search.first:.3f} -> {search.least:.3f}")
     console.say(columns([("gain", "before", "after", ""), *rows], right=(1, 2)))
+    along, end = (1e3 * error for error in errors)
+    console.say(f"In simulation it follows the sine within {along:.3g} mm rms; moves end within {end:.2g} mm.")
     node = f"ros2 run pneumo_ros controller --ros-args --params-file {options.out}"
-    console.say(f"Written to {options.out}; use: {node} --params-file MACHINE.yaml; see also: {program()} tune --help")
+    console.say(f"Written to {options.out}")
+    console.note(f"Next: {node} --params-file MACHINE.yaml")
     console.json(
         {
             "schema_version": 1,
@@ -128,6 +140,7 @@ def _tell(options: argparse.Namespace, start: "Control", model: "Model", search:
             "gains": search.gains,
             "cost": {"before": search.first, "after": search.least},
             "evaluations": search.count,
+            "error_m": {"sine_rms": errors[0], "move_end": errors[1]},
             "control": options.out,
         }
     )

@@ -10,11 +10,13 @@ import shutil
 import sys
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_output, add_recordings
 from pneumo_ros.command.console import Console
 from pneumo_ros.command.recordings import expanded, read_options
 from pneumo_ros.environment import require_libraries
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import MEASURED
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,8 +31,8 @@ WIDE = 40  # letters of a sparkline, where the terminal has room
 SHOWN = {
     "position": ("position", "mm", 1e3), "velocity": ("velocity", "m/s", 1.0),
     "pressure_a": ("pressure a", "bar", 1e-5), "pressure_b": ("pressure b", "bar", 1e-5),
-    "supply_pressure": ("supply pressure", "bar", 1e-5), "voltage": ("voltage", "V", 1.0),
-    "effort": ("effort", "N", 1.0), "load_cell": ("load cell", "N", 1.0),
+    "voltage": ("voltage", "V", 1.0), "effort": ("effort", "N", 1.0),
+    **{one.name: (one.name.replace("_", " "), *one.shown) for one in MEASURED},
 }  # fmt: skip
 
 EXAMPLES = (
@@ -47,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> int:
-    """Read each, print it, and say which could not be read."""
+    """Read each, print it, and say which could not be read or used; 1 where one cannot be used as it is read."""
     require_libraries(("rich",))
     from pneumo_ros.reading.read import corrected_recording
 
@@ -60,13 +62,25 @@ def run(options: argparse.Namespace, console: Console) -> int:
             problems.append(str(problem))
             console.note(f"Passed over: {problem}")
             continue
-        found.append(summary(recording))
-        console.say(text(recording))
+        wrong = unfit(recording)
+        found.append({**summary(recording), "unfit": wrong})
+        console.say(text(recording) + (f"\n  Not fit for other verbs: {wrong}" if wrong else ""))
     if not found:
         raise DataError(problems[-1])
-    console.next(f"compare {shlex.join(options.bags[:2])}")
+    console.next(f"compare {shlex.join(options.bags[:2])}{again(options)}")
     console.json({"schema_version": 1, "recordings": found, "passed_over": problems})
-    return 0
+    return int(any(one["unfit"] for one in found))
+
+
+def unfit(recording: "Recording") -> str:
+    """What keeps other verbs from using the recording as it is read, such as pressures in bar; empty if nothing."""
+    from pneumo_ros.records.unfit import check_pressures
+
+    try:
+        check_pressures(recording, oil=recording.voltage is None)
+    except DataError as problem:
+        return str(problem)
+    return ""
 
 
 def summary(recording: "Recording") -> dict[str, Any]:
@@ -75,7 +89,7 @@ def summary(recording: "Recording") -> dict[str, Any]:
 
     signals = {}
     for name in SHOWN:
-        values = getattr(recording, name)
+        values = recording.signals.get(name)
         if values is not None:
             signals[name] = {"low": np.nanmin(values), "high": np.nanmax(values), "mean": np.nanmean(values)}
     return {
@@ -102,7 +116,7 @@ def text(recording: "Recording") -> str:
     width = min(max(columns - 56, 10), WIDE)
     table.add_column(f"0 to {recording.duration:.1f} s", no_wrap=True)
     for name, (words, unit, factor) in SHOWN.items():
-        values = getattr(recording, name)
+        values = recording.signals.get(name)
         if values is not None:
             numbers = (f"{factor * pick(values):.4g} {unit}" for pick in (np.nanmin, np.nanmean, np.nanmax))
             table.add_row(words, *numbers, sparkline(recording.time, values, width))

@@ -10,6 +10,7 @@ import contextlib
 import signal
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings
 from pneumo_ros.command.console import Console
@@ -39,7 +40,8 @@ def run(options: argparse.Namespace, console: Console) -> int:
     from pneumo_ros.workbench.desk import Given
     from pneumo_ros.workbench.serve import serve
 
-    given = Given(tuple(options.bags), read_options(options), options.model, tuple(options.effects))
+    rig = str(Path(options.rig_file).resolve()) if options.rig_file else ""
+    given = Given(tuple(options.bags), read_options(options), options.model, tuple(options.effects), rig)
 
     def ready(address: str) -> None:
         console.say(address)

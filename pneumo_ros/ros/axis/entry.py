@@ -31,4 +31,4 @@ def _nodes(effects_files: Sequence[str]) -> list[AxisNode]:
     theirs = {setting.name for setting in controller_settings.SETTINGS} - controller_settings.OF_THE_MACHINE
     simulator = Simulator(effects_files, lambda name: name in theirs)
     clock = simulator.simulated_clock  # it stops when the plant pauses; /clock would halve the speed
-    return [simulator, Controller(lambda name: name in simulator.parameters, clock)]
+    return [simulator, Controller(lambda name: name in simulator.parameters, clock, simulated=True)]

@@ -69,9 +69,10 @@ class Inputs:
     def _supply(self, message: FluidPressure) -> None:
         guide = self._node.loop.guide
         before = guide.supply.lost
-        self._try("supply pressure", lambda: guide.supplied(message.fluid_pressure, self._node.loop_now()))
+        pressure = self._node.absolute(message.fluid_pressure)
+        self._try("supply pressure", lambda: guide.supplied(pressure, self._node.loop_now()))
         if guide.supply.lost and not before:
-            self._node.get_logger().error(f"supply pressure lost, {guide.supply.pressure:.4g} Pa: sending 0 V")
+            self._node.get_logger().error(f"supply pressure lost, {guide.supply.pressure:.4g} Pa: {self._node.closing}")
         elif before and not guide.supply.lost:
             self._node.get_logger().info("supply pressure is back; the piston stays until a new target arrives")
 

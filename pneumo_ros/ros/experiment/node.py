@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -15,6 +14,7 @@ from pneumo_ros.axis.experiment.preparing import prepare
 from pneumo_ros.axis.experiment.settings import SETTINGS
 from pneumo_ros.axis.health import Health
 from pneumo_ros.axis.priority import PRIORITY, take_priority
+from pneumo_ros.axis.rig import live_rig
 from pneumo_ros.axis.roles import CONTROLLER
 from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.experiment.conductor import Conductor
@@ -27,8 +27,9 @@ from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.experiment.plant import Plant
 from pneumo_ros.ros.experiment.takes import Takes
 from pneumo_ros.ros.node import AxisNode
-from pneumo_ros.ros.qos import PUBLISH, SUBSCRIBE
+from pneumo_ros.ros.qos import ACKNOWLEDGED, PUBLISH, SUBSCRIBE
 from pneumo_ros.ros.rivals import Rivals
+from pneumo_ros.ros.simulated import SimulatedRig
 
 CHECK = 0.1  # s between two checks of the plant, at most
 SIMULATED = 1_000_000_000  # ns between stamps and wall time: more means another clock
@@ -49,7 +50,9 @@ class Experiment(AxisNode):
         self.rivals = Rivals(self, CONTROLLER)
         values = self.parameters
         values.refuse_unknown()
-        self.programme, self.folder = prepare(values.values(), tuple(effects_files))
+        given = {**values.values(), "model_given": "model" in values.begun_with}
+        self.programme, self.folder = prepare(given, tuple(effects_files))
+        self._rig = live_rig(values.values(), self.programme.closed, self.programme.says_closed)
         self._events = Events(self.get_logger().info, values["events"], self._abandoned)
         self._conductor = Conductor(self.programme, self._events.report)
         self._reader, self._lock = readers.JointReader(values["joint_name"]), threading.Lock()
@@ -60,6 +63,7 @@ class Experiment(AxisNode):
         self._publisher, self._message = self.create_publisher(Float64, COMMAND, PUBLISH), messages.number()
         self._takes = Takes(self, self.folder, self._give_up)
         self._plant = Plant(self, self._takes.heard, self._publisher)
+        self._simulated = None if self._rig.declared else SimulatedRig(self)
         self.create_subscription(JointState, JOINT_STATES, self._joint_states, SUBSCRIBE, raw=True)
         self.create_timer(min(CHECK, 0.25 * values["measurement_timeout"]), self._check, clock=self.steady_clock)
 
@@ -90,7 +94,7 @@ class Experiment(AxisNode):
     def _conduct(self, stamp: int, position: float) -> float:
         conductor = self._conductor
         before, outcomes = conductor.recording, len(conductor.outcomes)
-        volts = conductor.step((stamp - self._origin) * 1e-9, position)
+        volts = conductor.step((stamp - self._origin) * 1e-9, self._rig.wiring.position(position))
         if conductor.recording and not before:
             self._takes.begin(conductor.recording, stamp)
             self._events.report(f"{self._where}: {conductor.recording}", "trial", index=conductor.index)
@@ -101,10 +105,19 @@ class Experiment(AxisNode):
         return volts
 
     def _send(self, volts: float) -> None:
+        if self._refusal():
+            return
         with self._lock:
-            payload = self._message.fill(0, self.programme.closed + (0.0 if self._over else volts))
+            closed = self.programme.closed
+            sent = self._rig.safe(closed) if self._over else self._rig.command(closed + volts)
+            payload = self._message.fill(0, sent)
             self._publisher.publish(payload)
             self._takes.command(self._stamp, payload)
+
+    def _refusal(self) -> str:
+        """Why no command may be sent; empty if one may."""
+        simulated = self._simulated.closed if self._simulated is not None and self._simulated.found else None
+        return self._rig.refusal(self.programme.closed, simulated, verb=self.parameters["events"])
 
     @property
     def _where(self) -> str:
@@ -131,7 +144,7 @@ class Experiment(AxisNode):
         self.rivals.look()
         if self.rivals.others:
             self._give_up(UsageError(f"{self.rivals.others} sends {self._publisher.topic_name}, too; stop it first"))
-        elif not missing:
+        elif not missing and not self._refusal():
             away = abs(self._stamp - time.time_ns()) > SIMULATED
             self._takes.simulated = away and self.count_publishers("/clock") > 0
             if not self._takes.simulated:  # without it, nodes that have it would delay the commands
@@ -141,7 +154,7 @@ class Experiment(AxisNode):
             self._origin, self._begun = self._stamp, True
             self._events.report(f"{len(self.programme.trials)} trials, recorded in {self.folder}", "begin")
         elif time.monotonic() - self._started > self.parameters["wait"]:
-            self._give_up(DataError(missing))
+            self._give_up(DataError(missing) if missing else UsageError(self._refusal()))
 
     # --- the end ------------------------------------------------------------------------------------------------------
 
@@ -151,7 +164,8 @@ class Experiment(AxisNode):
             if self._over:
                 return
             self._over = True
-            self._publisher.publish(self._message.fill(0, self.programme.closed))
+            if not self._refusal():
+                self._publisher.publish(self._message.fill(0, self._rig.safe(self.programme.closed)))
         self.fail(reason)
 
     def _abandoned(self) -> None:
@@ -163,7 +177,7 @@ class Experiment(AxisNode):
             where = f" during trial {self._where}" if self._begun else " before the first trial"
             self._give_up(InterruptedExperimentError(f"interrupted{where}"))
         self._send(0.0)
-        self._publisher.wait_for_all_acked(Duration(seconds=0.2))
+        self._publisher.wait_for_all_acked(ACKNOWLEDGED)
         self._takes.end(self._stamp)
         try:
             self._takes.close()
@@ -188,5 +202,5 @@ class Experiment(AxisNode):
         lost = self._takes.lost
         warnings = [f"{lost} messages lost"] if lost else []
         if not self._begun:
-            warnings.append(self._plant.missing(self._stamp > 0) or "about to begin")
+            warnings.append(self._plant.missing(self._stamp > 0) or self._refusal() or "about to begin")
         return Health({**values, "lost_messages": lost}, warnings)

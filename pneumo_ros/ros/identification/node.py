@@ -15,8 +15,10 @@ from pneumo_ros.axis.identification import result_file
 from pneumo_ros.axis.identification.arrivals import Arrivals, Print
 from pneumo_ros.axis.identification.settings import SETTINGS
 from pneumo_ros.axis.identification.worker import Line, Worker
+from pneumo_ros.axis.rig import recorded_as, rig_of
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Library, load_model, model_from_dict
+from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.ros.description import Description, describe
 from pneumo_ros.ros.identification.target import Target
 from pneumo_ros.ros.node import AxisNode
@@ -33,7 +35,13 @@ class Identification(AxisNode):
         super().__init__("identification", SETTINGS)
         self.parameters.refuse_unknown()
         self._files = tuple(effects_files)
-        self.start_model = self.model = load_model(self.parameters["model"], self._files)
+        values = self.parameters.values()
+        self._rig = rig_of(values)
+        named = (
+            self._rig.machine if self._rig.machine and "model" not in self.parameters.begun_with else values["model"]
+        )
+        self.start_model = self.model = load_model(named, self._files)
+        self._words = recorded_as(values, closed_signal(self.model))
         self._arrivals, self._ready, self._waiting = Arrivals(), dict[Path, Print](), dict[Path, str]()
         self._used: dict[Path, Print] = {}  # at the last start
         self._changed = time.monotonic()
@@ -72,7 +80,8 @@ class Identification(AxisNode):
             {
                 "machine": self.start_model.as_dict(), "name": self.start_model.name,
                 "files": [str(path) for path in self._files], "bags": [str(path) for path in self._used],
-                "axis": self.parameters["axis"], "joint_name": self.parameters["joint_name"],
+                "axis": self.parameters["axis"] or self._rig.namespace,
+                "joint_name": self.parameters["joint_name"] or self._rig.joint, "words": list(self._words),
                 "whole_model": self.parameters["whole_model"],
             }
         )  # fmt: skip

@@ -42,6 +42,9 @@ class Services:
 
     def _step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         node = self._node
+        if node.coupling:
+            response.success, response.message = False, "the simulator that sends coupled/joint_states makes the steps"
+            return response
         if not node.paused or node.fault:
             response.success, response.message = False, node.fault or "running; call ~/pause with data: true first"
             return response

@@ -13,7 +13,7 @@ from pneumo_ros.axis.simulator.settings import EFFECTS, machine_settings
 from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.closed import closed_signal
+from pneumo_ros.plant.closed import closed_signal, second_closed
 from pneumo_ros.ros.parameters import Parameters, Values
 
 _SENSORS = (
@@ -45,7 +45,7 @@ class Tuning:
         model = changed(self._wanted, values)
         model.state(**initial_state(values))
         if model is not self._wanted:
-            check_live(model, float(self._simulation.plant.state[0]))
+            check_live(model, self._wanted, float(self._simulation.plant.state[0]))
         if values["max_voltage"] <= 0.0:
             raise UsageError("max_voltage is 0 V; it takes a positive number")
 
@@ -83,6 +83,7 @@ class Tuning:
         with self._lock:
             self._simulation.replace(model)
             self._simulation.valve.close_at(closed_signal(model))
+            self._simulation.valve_b.close_at(second_closed(model) or 0.0)
         for sentence in model.cautions():
             self._logger.warning(sentence)
         self._adopted()
@@ -90,7 +91,9 @@ class Tuning:
     def _take_settings(self, values: Values) -> None:
         simulation = self._simulation
         simulation.initial = initial_state(values)
-        simulation.valve.max_voltage, simulation.valve.timeout = values["max_voltage"], values["command_timeout"]
+        for valve in (simulation.valve, simulation.valve_b):
+            valve.max_voltage, valve.timeout = values["max_voltage"], values["command_timeout"]
+        simulation.force.timeout = values["force_timeout"]
         for name in _SENSORS:
             setattr(simulation.sensors, name, values[name])
 

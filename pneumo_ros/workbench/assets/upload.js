@@ -19,20 +19,29 @@
     }
   }
 
-  async function send(list) {
+  const TABLE = /\.(csv|tsv|txt|dat|exp|asc|log|mat|npz|npy|parquet|pq|json|jsonl|ndjson)(\.gz)?$/i;
+  const folders = { table: "tables_to_import", machine: "machine_files" };
+
+  // `what` is "table" or "machine" for files that are no recordings.
+  async function send(list, what) {
     const problems = [];
-    for (const [k, [path, file]] of list.entries()) {
+    let taken = "";
+    for (const [k, [given, file]] of list.entries()) {
+      const kind = what || (TABLE.test(given) && !given.includes("/") ? "table" : "");
+      const path = kind ? `${folders[kind]}/${file.name}` : given;
       say(`Taking ${k + 1} of ${list.length}: ${path}`);
       const where = `/upload/${desk()}/${path.split("/").map(encodeURIComponent).join("/")}`;
       try {
         const answer = await fetch(where, { method: "PUT", body: file });
         if (answer.status === 413) problems.push(`${path} is too large`);
         else if (!answer.ok) problems.push(await answer.text());
+        else if (kind) window.dash_clientside.set_props(`${kind}-uploaded`, { data: { name: (taken = file.name), at: Date.now() } });
       } catch (error) {
         problems.push(`${path}: ${error.message}`);
       }
     }
     say(problems.join(". "));
+    if (what) window.dash_clientside.set_props(`${what}-says`, { children: problems.join(". ") || taken });
     window.dash_clientside.set_props("uploaded", { data: Date.now() });
   }
 
@@ -56,9 +65,10 @@
     if (!button) return;
     const input = document.createElement("input");
     input.type = "file";
-    input.multiple = true;
+    const what = button.dataset.choose in folders ? button.dataset.choose : "";
+    input.multiple = !what;
     input.webkitdirectory = button.dataset.choose === "folder";
-    input.onchange = () => send([...input.files].map((file) => [file.webkitRelativePath || file.name, file]));
+    input.onchange = () => send([...input.files].map((file) => [file.webkitRelativePath || file.name, file]), what);
     input.click();
   });
 })();

@@ -29,6 +29,7 @@ window.dash_clientside.bench = (() => {
       if (before && before.visible !== undefined) trace.visible = before.visible;
     });
     const layout = Plots.layout(chart, null, width);
+    if (chart.height) layout.height = chart.height; // else plotly keeps the height of the chart before
     layout.shapes = [...(chart.shades || []).map(shade), ...Object.entries(chart.cursors || {}).map(cursor)];
     await window.Plotly.react(div, data, layout, CONFIG);
     div.dataset.drawn = String(Number(div.dataset.drawn || 0) + 1);
@@ -75,10 +76,11 @@ window.dash_clientside.bench = (() => {
     div.dataset.listens = "yes";
     div.on("plotly_relayout", zoomed);
     div.on("plotly_doubleclick", () => zoom(null));
-    div.on("plotly_click", (event) => window.dash_clientside.set_props("clicked", { data: { x: event.points[0].x, at: Date.now() } }));
+    div.on("plotly_click", (event) => view.over || window.dash_clientside.set_props("clicked", { data: { x: event.points[0].x, at: Date.now() } }));
   }
 
   function zoomed(change) {
+    if (view.over) return; // the x axis is no time
     const range = change["xaxis.range"] || [change["xaxis.range[0]"], change["xaxis.range[1]"]];
     if (change["xaxis.autorange"]) zoom(null);
     else if (range[0] !== undefined && JSON.stringify(range) !== JSON.stringify(view.span)) zoom(range.map(Number));
@@ -91,10 +93,10 @@ window.dash_clientside.bench = (() => {
   }
 
   // Callbacks start what they draw and do not wait for it: Dash would hold back every other callback meanwhile.
-  function signals(revision, run, shown, regime, other, marks) {
+  function signals(revision, run, shown, regime, other, marks, also, topics, over) {
     const span = run === view.run ? view.span : null;
     if (span !== view.span) window.dash_clientside.set_props("span", { data: null });
-    view = { run, shown, regime, other, marks, span };
+    view = { run, shown: [...shown, ...(topics || [])], regime, other, marks, also, over, span };
     redraw();
     return revision;
   }
@@ -200,8 +202,24 @@ window.dash_clientside.bench = (() => {
 
   function tab(value) {
     document.querySelectorAll(".panel").forEach((panel) => { panel.hidden = panel.id !== `panel-${value}`; });
+    document.querySelectorAll("#lead [data-tab]").forEach((step) => step.setAttribute("aria-pressed", step.dataset.tab === value));
     setTimeout(() => window.dispatchEvent(new Event("resize")), 0); // plots adapt to their new width
     return value;
+  }
+
+  // Effects whose name, signature, text or parameters hold every word that is typed.
+  document.addEventListener("input", (event) => {
+    if (event.target.id !== "search") return;
+    const words = event.target.value.toLowerCase().split(/\s+/).filter(Boolean);
+    document.querySelectorAll("#effects .effect").forEach((one) => { one.hidden = !words.every((word) => one.dataset.words.includes(word)); });
+    document.querySelectorAll("#effects > div").forEach((room) => { room.hidden = !room.querySelector(".effect:not([hidden])"); });
+  });
+
+  // A step of the bar that opens a panel.
+  function go() {
+    const pressed = window.dash_clientside.callback_context.triggered_id;
+    if (pressed) window.dash_clientside.set_props("tab", { value: pressed.replace("go-", "") });
+    return same();
   }
 
   dark.addEventListener("change", () => charts.forEach((chart, div) => div.dataset.drawn && draw(div, { ...chart })));
@@ -221,5 +239,5 @@ window.dash_clientside.bench = (() => {
     setInterval(look, 500);
   }, 50);
 
-  return { live, look: acted, respond, show, signals, tab, whole };
+  return { go, live, look: acted, respond, show, signals, tab, whole };
 })();

@@ -10,6 +10,7 @@ class CrossPistonLeakage(Effect):
 
     source = "Richer and Hurmuzlu 2000, A high performance pneumatic force actuator system, Part I (leakage)"
     signature = "equal and opposite flow residuals that follow p_a - p_b"
+    remedy = "replace the piston seal; look at the bore for scores"
 
     def equations(p_a, p_b, conductance):
         flow_b = conductance * (p_a - p_b)

@@ -14,6 +14,7 @@ class Cushioning(Effect):
 
     source = "Beater 2007, Pneumatic Drives (end-position cushioning)"
     signature = "a spike of back pressure near the ends"
+    remedy = "set the cushion screws, or keep the moves clear of the end cushions"
 
     def equations(y, port_flow_a, port_flow_b, stroke, remaining, length):
         shut_a = min(max((length - 0.5 * stroke - y) / (0.2 * length), 0.0), 1.0)

@@ -11,6 +11,7 @@ class DeadVolume(Effect):
 
     source = "Richer and Hurmuzlu 2000, A high performance pneumatic force actuator system, Part I (inactive volume)"
     signature = "pressures change slower, most near the short end"
+    remedy = "shorten the hoses between valve and cylinder, or measure them and enter their volume"
 
     def equations(volume_a, volume_b, area_a, area_b, stroke, volume_added_a, volume_added_b):
         added_volume_a = max(volume_added_a, 0.9 * min(0.5 * area_a * stroke - volume_a, 0.0))

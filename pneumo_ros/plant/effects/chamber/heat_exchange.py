@@ -51,6 +51,7 @@ class HeatExchange(Effect):
 
     source = "Carneiro and de Almeida 2006, Reduced-order thermodynamic models for servo-pneumatic actuator chambers"
     signature = "pressure relaxes after the valve closes; transients change, steady speed does not"
+    remedy = "nothing to repair: every cylinder has it; keep it in the model"
 
     def equations(
         y, v, p_a, p_b, theta_a, theta_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b,

@@ -11,6 +11,7 @@ class LeakageToAtmosphere(Effect):
 
     source = "Beater 2007, Pneumatic Drives (leakage)"
     signature = "one chamber alone loses air, always outward"
+    remedy = "find the leak at fittings, hose and rod seal of this chamber with soapy water; tighten or replace"
 
     def equations(p_a, p_b, p_atm, conductance_a, conductance_b):
         flow_a = -conductance_a * (p_a - p_atm)

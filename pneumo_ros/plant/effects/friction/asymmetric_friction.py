@@ -20,6 +20,7 @@ class AsymmetricFriction(Effect):
         "friction behavior in industrial pneumatic actuators (maps of both directions)"
     )
     signature = "two friction levels and a jump at reversal; unlike a load, it vanishes at rest"
+    remedy = "look at the rod seal and the wiper, and at the alignment of rod and load"
 
     def equations(v, ratio, static_ratio):
         friction_scale = 1.0 + (ratio if v < 0.0 else 0.0)

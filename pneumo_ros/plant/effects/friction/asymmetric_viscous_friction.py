@@ -16,6 +16,7 @@ class AsymmetricViscousFriction(Effect):
         "Helouvry, Dupont and Canudas de Wit 1994, A survey of models ... for the control of machines with friction"
     )
     signature = "the slope of friction over velocity differs by direction"
+    remedy = "look at lubrication and preload in the direction with more friction"
     contains = ("viscous_friction",)
 
     def equations(v, coefficient_extension, coefficient_retraction):

@@ -20,6 +20,7 @@ class DwellTimeBreakaway(Effect):
         "slideway (growth); Ruina 1983, Slip instability and state variable friction laws (age)"
     )
     signature = "the first breakaway after a pause is higher"
+    remedy = "grease the seals; after a long rest, move once before exact work"
 
     def equations(v, age, rise, time_constant, distance):
         rate_age = abs(v) / distance

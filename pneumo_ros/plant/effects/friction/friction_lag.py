@@ -17,6 +17,7 @@ class FrictionLag(Effect):
         "Tran and Yanada 2013, Dynamic friction behaviors of pneumatic cylinders"
     )
     signature = "the loop of friction over velocity widens with frequency"
+    remedy = "nothing to repair: a lubricant film has it; keep it in the model"
 
     def equations(v, v_f, time_constant):
         rate_v_f = 1.0 / max(time_constant, RESOLVED)

@@ -11,6 +11,7 @@ class FrictionWarmup(Effect):
 
     source = "Armstrong-Helouvry 1991, Control of Machines with Friction (friction falls as a machine warms up)"
     signature = "the magnitude of friction decays with running time"
+    remedy = "move the machine some minutes before exact work; look at the grease if it takes long"
 
     def equations(t, share, time_constant):
         friction_scale = 1.0 - share * (1.0 - exp(-max(t, 0.0) / time_constant))

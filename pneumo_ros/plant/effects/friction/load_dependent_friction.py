@@ -15,6 +15,7 @@ class LoadDependentFriction(Effect):
     transmission = True
     source = "Duclusaud et al. 2025, Extended friction models for the physics simulation of servo actuators"
     signature = "friction follows the magnitude of the drive force"
+    remedy = "lubricate gear or screw; look at their preload"
 
     def equations(drive, force, coefficient):
         friction_rise = 0.5 * coefficient * abs(drive + force)

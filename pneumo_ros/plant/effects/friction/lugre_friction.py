@@ -26,6 +26,7 @@ class LugreFriction(Effect):
         "Canudas de Wit et al. 1995; Dupont et al. 2000, Eqs. 4-8; paper Eqs. 10-14 with sgn(y2) in Eq. 5 read as |y2|"
     )
     signature = "sticks until the static friction is reached, falls to the Coulomb level as it slides"
+    remedy = "nothing to repair: every seal has it; grease the seals if the static friction has grown"
 
     def equations(
         v, z, stribeck, friction_scale, friction_rise, static_scale, static_rise,

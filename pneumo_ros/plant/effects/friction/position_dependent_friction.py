@@ -33,6 +33,7 @@ class PositionDependentFriction(Effect):
         "A Practical Guide to Splines"
     )
     signature = "friction follows position, flips with velocity and repeats every stroke"
+    remedy = "look along the stroke where friction is high: bent rod, worn or dirty guide, misalignment"
 
     def equations(
         y, stroke,

@@ -10,6 +10,7 @@ class PressureDependentFriction(Effect):
 
     source = "Belforte, Raparelli and Velardocchia 1993, Study of the behavior of lip seals in pneumatic actuators"
     signature = "friction follows the level of both chamber pressures"
+    remedy = "nothing to repair: lip seals have it; softer or low-friction seals reduce it"
 
     def equations(p_a, p_b, p_atm, coefficient):
         friction_rise = coefficient * max(0.5 * (p_a + p_b) - p_atm, 0.0)

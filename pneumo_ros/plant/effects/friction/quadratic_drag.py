@@ -10,6 +10,7 @@ class QuadraticDrag(Effect):
 
     source = "paper Eq. 10"
     signature = "residual force grows with the square of velocity and changes sign with it"
+    remedy = "look for a throttle or a silencer that is clogged; otherwise keep it in the model"
 
     def equations(v, coefficient):
         resistance = coefficient * abs(v)

@@ -17,6 +17,7 @@ class StribeckShape(Effect):
         "Hess and Soom 1990, Friction at a lubricated line contact operating at oscillating sliding velocities"
     )
     signature = "shows only below about five Stribeck velocities"
+    remedy = "nothing to repair: it is a property of seals and grease; keep it in the model"
 
     def equations(slip, stribeck_velocity, exponent, rational):
         speed = power(abs(slip) / stribeck_velocity, exponent)

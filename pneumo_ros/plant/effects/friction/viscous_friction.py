@@ -10,6 +10,7 @@ class ViscousFriction(Effect):
 
     source = "Canudas de Wit et al. 1995, Eq. 3"
     signature = "residual force in proportion to velocity"
+    remedy = "look at the grease (too much, too stiff, too cold) and at the alignment of the guide"
 
     def equations(v, coefficient):
         friction = coefficient * v

@@ -27,6 +27,7 @@ class LineDelay(Effect):
 
     source = "Richer and Hurmuzlu 2000, A high performance pneumatic force actuator system, Part I (connecting tubes)"
     signature = "flow is a delayed copy of the valve's flow"
+    remedy = "shorten the hoses, or mount the valve nearer to the cylinder"
 
     def equations(
         valve_flow_a, valve_flow_b, p_a, p_b, p_atm, line_a_1, line_a_2, line_a_3, line_b_1, line_b_2, line_b_3,

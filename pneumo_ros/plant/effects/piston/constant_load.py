@@ -10,6 +10,7 @@ class ConstantLoad(Effect):
 
     source = "Newton's second law"
     signature = "the same force in both directions of motion and at rest"
+    remedy = "look at the mounting angle, and at what hangs on the rod; balance it or enter it"
 
     def equations(load):
         force = load

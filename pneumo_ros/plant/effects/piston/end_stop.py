@@ -14,6 +14,7 @@ class EndStop(Effect):
 
     source = "Hunt and Crossley 1975, Coefficient of restitution interpreted as damping in vibroimpact"
     signature = "velocity drops to zero at a fixed position while the pressures go on"
+    remedy = "nothing to repair: every cylinder ends somewhere; enter the true stroke"
 
     def equations(y, v, stroke, stiffness, damping):
         over = max(y - 0.5 * stroke, 0.0)

@@ -11,6 +11,7 @@ class ImposedMotion(Effect):
 
     source = "kinematics: y' = v with v given"
     signature = "the motion does not depend on any force"
+    remedy = "nothing to repair: a test machine moves the rod"
 
     def equations(mass):
         added_mass = 1e9 * mass  # no force of a cylinder changes the motion of so many kg within a step

@@ -18,6 +18,7 @@ class LoadCompliance(Effect):
 
     source = "two-mass system, e.g. Isermann 2005, Mechatronic Systems"
     signature = "ringing above the frequency of the air spring"
+    remedy = "tighten or stiffen the coupling between rod and load"
 
     def equations(v, stretch, v_l, mass, load_share, frequency, damping_ratio):
         omega, load = 2.0 * pi * frequency, load_share * mass

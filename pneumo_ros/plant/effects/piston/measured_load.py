@@ -16,6 +16,7 @@ class MeasuredLoad(Effect):
 
     source = "Newton's second law"
     signature = "the momentum error follows the load cell"
+    remedy = "nothing to repair: the load cell tells the load; keep it in the model"
 
     def equations(load_force, gain):
         force = -gain * load_force

@@ -10,6 +10,7 @@ class PayloadMass(Effect):
 
     source = "Newton's second law"
     signature = "residual force follows acceleration"
+    remedy = "weigh what is fixed to the rod and enter its mass"
 
     def equations(mass_added):
         added_mass = mass_added

@@ -8,6 +8,7 @@ class RodAtmosphericForce(Effect):
 
     source = "force balance of a single-rod cylinder, e.g. Beater 2007, Pneumatic Drives, ch. 5"
     signature = "a constant force of known value, present at rest"
+    remedy = "nothing to repair: the atmosphere pushes on every rod; keep it in the model"
 
     def equations(p_atm, area_a, area_b):
         force = p_atm * (area_a - area_b)

@@ -17,6 +17,7 @@ class SpringLoad(Effect):
 
     source = "Hooke's law; with a cubic term, Duffing 1918; progressive as by EN 13906-1, Cylindrical helical springs"
     signature = "a force that grows with position and does not flip with the direction of motion"
+    remedy = "look for a spring, a hose or a cable that pulls more the farther the piston goes"
 
     def equations(y, stiffness, rest_position, hardening, progression):
         x = y - rest_position

@@ -12,6 +12,7 @@ class Backlash(Effect):
 
     source = "play operator, Nordin and Gutman 2002, Controlling mechanical systems with backlash - a survey"
     signature = "measured position waits at reversals, then goes on in parallel"
+    remedy = "take the play out of the coupling between piston and position sensor, or replace it"
 
     def equations(v, y_measured, play):
         der_play = v

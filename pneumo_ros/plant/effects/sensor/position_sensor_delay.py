@@ -22,6 +22,7 @@ class PositionSensorDelay(Effect):
 
     source = "Golub and Van Loan, Matrix Computations (Pade approximants of the exponential)"
     signature = "position lags the pressures; the residual follows jerk"
+    remedy = "look at filter and bus settings of the position sensor, and at what stamps its messages"
 
     def equations(v, y_measured, behind, v_behind, smoothed, delay, low_pass):
         tau, share = max(delay, RESOLVED), min(delay / RESOLVED, 1.0)

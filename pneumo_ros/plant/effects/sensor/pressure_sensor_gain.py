@@ -11,6 +11,7 @@ class PressureSensorGain(Effect):
 
     source = "IEC 61298-2, span error"
     signature = "an error that grows with pressure"
+    remedy = "calibrate the pressure sensor, and compare its range with its settings"
 
     def equations(p_a_measured, p_b_measured, error_a, error_b):
         p_a_measured = (1.0 + error_a) * p_a_measured

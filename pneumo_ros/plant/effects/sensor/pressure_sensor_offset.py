@@ -11,6 +11,7 @@ class PressureSensorOffset(Effect):
 
     source = "IEC 61298-2, zero error"
     signature = "a vented chamber does not read the atmosphere's pressure"
+    remedy = "set the zero of the pressure sensor with the chamber vented"
 
     def equations(p_a_measured, p_b_measured, offset_a, offset_b):
         p_a_measured = p_a_measured + offset_a

@@ -12,10 +12,14 @@ class ArctanFlow(Effect):
 
     source = "paper Eqs. 6-9; Endler 2009"
     signature = "steady speed saturates with voltage"
+    remedy = "nothing to repair: it is the curve of the valve; enter its figures"
 
-    def equations(opening, p_a, p_b, p_s, p_atm, filling_coefficient, exhaust_coefficient, voltage_gain):
-        fills_a = opening >= 0.0
-        phi = atan(voltage_gain * opening)
-        valve_flow_a = phi * (filling_coefficient * (p_s - p_a) if fills_a else exhaust_coefficient * (p_a - p_atm))
-        valve_flow_b = -phi * (exhaust_coefficient * (p_b - p_atm) if fills_a else filling_coefficient * (p_s - p_b))
+    def equations(
+        opening_a, opening_b, share_pa, share_at, share_pb, share_bt, p_a, p_b, p_s, p_atm, filling_coefficient,
+        exhaust_coefficient, voltage_gain,
+    ):  # fmt: skip
+        fill_a, empty_a = share_pa * filling_coefficient * (p_s - p_a), share_at * exhaust_coefficient * (p_a - p_atm)
+        fill_b, empty_b = share_pb * filling_coefficient * (p_s - p_b), share_bt * exhaust_coefficient * (p_b - p_atm)
+        valve_flow_a = atan(voltage_gain * opening_a) * (fill_a if opening_a >= 0.0 else empty_a)
+        valve_flow_b = atan(voltage_gain * opening_b) * (fill_b if opening_b > 0.0 else empty_b)
         return valve_flow_a, valve_flow_b

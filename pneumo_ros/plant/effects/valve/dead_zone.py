@@ -15,6 +15,7 @@ class DeadZone(Effect):
 
     source = "paper Table 1; Valdiero et al. 2011"
     signature = "nothing moves for small voltages; flow begins beyond a threshold on either side"
+    remedy = "nothing to repair: closed-centre valves have it; compensate it in the controller"
 
     def equations(spool, right_limit, left_limit, right_slope, left_slope):
         opening = 0.0

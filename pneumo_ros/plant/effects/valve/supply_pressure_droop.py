@@ -13,6 +13,7 @@ class SupplyPressureDroop(Effect):
 
     source = "balance of mass of a tank behind a resistance, e.g. Beater 2007, Pneumatic Drives"
     signature = "inflow falls during long fillings and recovers after"
+    remedy = "look at regulator, filter and supply hose; put a reservoir near the valve"
 
     def equations(valve_flow_a, valve_flow_b, d_s, resistance_supply, time_constant):
         drawn = max(valve_flow_a, 0.0) + max(valve_flow_b, 0.0)

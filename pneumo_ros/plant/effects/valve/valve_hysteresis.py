@@ -12,6 +12,7 @@ class ValveHysteresis(Effect):
 
     source = "play operator, Visintin 1994, Differential Models of Hysteresis; ISO 10041-1, hysteresis"
     signature = "flow depends on the direction in which the voltage changed last"
+    remedy = "clean the valve or replace it; a dither on the command reduces the effect"
 
     def equations(voltage, seen, half_width):
         voltage = min(max(seen, voltage - half_width), voltage + half_width)

@@ -11,6 +11,7 @@ class ValveInternalLeakage(Effect):
 
     source = "Eryilmaz and Wilson 2006, Unified modeling and analysis of a proportional valve (leakage around null)"
     signature = "at zero volts both pressures drift to one level between supply and atmosphere"
+    remedy = "clean the valve or replace it; a lapped spool leaks by design, compare with its data sheet"
 
     def equations(opening, p_a, p_b, p_s, p_atm, conductance, width):
         ratio = opening / width

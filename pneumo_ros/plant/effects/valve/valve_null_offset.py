@@ -10,6 +10,7 @@ class ValveNullOffset(Effect):
 
     source = "ISO 10770-1, null bias (there of hydraulic valves)"
     signature = "left and right dead zones differ; creep at zero volts"
+    remedy = "set the null of the valve, or the offset of the command in the controller"
 
     def equations(offset):
         voltage_offset = offset

@@ -19,6 +19,7 @@ class ValveSpoolDynamics(Effect):
         "proportional pressure valve; Beater 2007, Pneumatic Drives"
     )
     signature = "opposite spikes in both flows after each change of voltage"
+    remedy = "compare the speed with the data sheet: if it is lower, look at dirt and at the valve's supply voltage"
 
     def equations(voltage, x_s, w_s, angular_frequency, damping_ratio):
         omega = angular_frequency

@@ -1,9 +1,10 @@
-"""The two chambers of the cylinder."""
+"""A cylinder with air on both sides of its piston."""
 
-from pneumo_ros.plant.effect import Effect, Parameter, State
+from pneumo_ros.plant.actuator import Actuator
+from pneumo_ros.plant.effect import Parameter, State
 
 
-class Chambers(Effect):
+class Chambers(Actuator):
     """Mass and energy balance of both chambers, Eqs. 3-4: p' = gamma (R T q - p V') / V + (gamma - 1) Q / V."""
 
     volume_a = Parameter(5.1e-4, "m3", "volume V_a0 of chamber a and its line at mid stroke", low=1e-8, high=10.0)

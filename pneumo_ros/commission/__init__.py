@@ -1,0 +1,1 @@
+"""`pneumo commission`: wiring, static and dynamic trials of a new axis, then the moves that narrow intervals most."""

@@ -1,0 +1,256 @@
+"""The procedure: wiring, static and dynamic trials, then the moves that narrow the intervals most, until none pays."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pneumo_ros.commission import moves
+from pneumo_ros.commission.information import MINUTE, Knowledge, Told, knowledge, shrinkage, told
+from pneumo_ros.commission.performing import Perform, Performed
+from pneumo_ros.commission.settling import settled
+from pneumo_ros.commission.simulated import SimulatedRig
+from pneumo_ros.commission.wiring import UnmovedError, Wired, as_run, find_wiring
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.errors import DataError, NumericalError, UsageError
+from pneumo_ros.experiment.beside import counted_from
+from pneumo_ros.experiment.plumbing import plumbing
+from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.experiment.room import dead_zone
+from pneumo_ros.experiment.whitened import Noise
+from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import centred, closed_signal
+from pneumo_ros.records import Recording
+from pneumo_ros.runs.run import Run
+
+Tell = Callable[[str], object]
+
+ENOUGH = 0.1  # share by which the next minute must narrow the intervals, or the moves end
+MOST = 200  # moves
+STRONGER = (1.0, 2.0, 4.0)  # factors of the voltages of the plumbing trial, until the piston moves
+AGAIN = 4  # times that a trial is tried with other voltages, where it was ended at a limit or did not move
+
+
+@dataclass(frozen=True)
+class Move:
+    """A programme that was performed: recordings, seconds, and the deviations predicted before and found after it."""
+
+    name: str
+    recordings: tuple[str, ...]
+    seconds: float
+    predicted: dict[str, float] = field(default_factory=dict)
+    found: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def ratio(self) -> float:
+        """Achieved over predicted deviations, the geometric mean; NaN where nothing was predicted."""
+        if not self.predicted:
+            return float("nan")
+        return float(np.exp(np.mean([np.log(self.found[n] / self.predicted[n]) for n in self.predicted])))
+
+
+@dataclass(frozen=True)
+class Commissioned:
+    """The machine and what is known of it.
+
+    left: share by which another minute, best with `next_move`, would narrow the intervals; lacking: parameters that
+    stay as data sheets say.
+    """
+
+    before: Model
+    wired: Wired
+    moves: tuple[Move, ...]
+    knowledge: Knowledge
+    runs: tuple[Run, ...]
+    left: float
+    next_move: str
+
+    @property
+    def machine(self) -> Model:
+        """The machine that was found, with its standard deviations as uncertainty."""
+        return self.knowledge.model.with_uncertainty(self.knowledge.deviations)
+
+    @property
+    def seconds(self) -> float:
+        """Time of the plant that it took [s]."""
+        return sum(move.seconds for move in self.moves)
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """Parameters that the trials do not determine."""
+        return tuple(name for name, one in self.knowledge.estimates.items() if not one.determined)
+
+
+@dataclass
+class Commissioning:
+    """A commissioning under way. `perform` moves the plant; `tell` gets a sentence for each step."""
+
+    model: Model  # as data sheets tell it
+    perform: Perform
+    words: tuple[str, ...] = ()  # what is known of the wiring, words of --read-as
+    sensors: tuple[str, ...] | None = None  # words of the pressure sensors; None: they are guessed
+    minutes: float = 5.0  # of moves, at most
+    tell: Tell = lambda text: None
+
+    def __post_init__(self) -> None:
+        self.model.require_two_chambers("commissioning")
+        self.runs: list[Run] = []
+        self.moves: list[Move] = []
+        self.known = knowledge(self.model, ())
+        self.wired = Wired(self.words, False)
+        self._static: Performed | None = None  # made already, to see the wiring
+
+    # --- stage 0 ------------------------------------------------------------------------------------------------------
+
+    def wiring(self) -> Wired:
+        """Ten seconds at low opening: how the rig is wired. DataError where a sensor is dead or nothing moves.
+
+        Where that does not decide, and what is left are mirror images, which move alike, the static trials follow.
+        """
+        for stronger in STRONGER:
+            programme = counted_from(plumbing(centred(self.model), stronger=stronger), closed_signal(self.model))
+            done = self._performed(programme, "wiring")
+            self.moves.append(Move("wiring", _names(done), done.seconds))
+            try:
+                self.wired = find_wiring(done.recordings, self.model, self.words, self.sensors)
+                break
+            except UnmovedError as error:
+                if stronger == STRONGER[-1]:
+                    raise
+                self.tell(f"wiring: {str(error).partition(':')[0]}; tried again with larger ones")
+        self._look(done)
+        static = None if self.wired.certain else moves.safe(moves.static(self.known.model), self._possible())
+        if static is not None:
+            self.tell("wiring: another one explains this nearly as well; static trials will tell")
+            self._static = self._performed(static, "static")
+            recordings = (*done.recordings, *self._static.recordings)
+            self.wired = find_wiring(recordings, self.model, self.words, self.sensors)
+            self._look(done)
+        return self.wired
+
+    def _look(self, done: Performed) -> None:
+        """Know the machine by the plumbing trial: how easily it moves."""
+        self.runs = [self._run(recording) for recording in done.recordings]
+        with suppress(DataError, UsageError):  # hardly any motion, or none that this machine could make
+            known = knowledge(self.model, self.runs)
+            known.model.state()
+            self.known = known
+
+    # --- stages 1 and 2 -----------------------------------------------------------------------------------------------
+
+    def basics(self) -> None:
+        """Static and dynamic trials, and the first fit to them. Needs `wiring`."""
+        for name, make in (("static", moves.static), ("dynamic", moves.dynamic)):
+            if name == "static" and self._static is not None:
+                self._learn(name, self._static)
+                continue
+            programme = moves.safe(make(self.known.model), self._possible())
+            if programme is None:
+                self.tell(f"{name}: left out, as even its smallest voltages may take the piston to an end stop")
+                continue
+            self._take(name, programme)
+
+    # --- stage 3 ------------------------------------------------------------------------------------------------------
+
+    def best_move(self) -> tuple[float, Programme | None, Told]:
+        """The move that narrows the intervals most: its share per minute, the programme, and what it would tell."""
+        best: tuple[float, Programme | None, Told] = (0.0, None, self.known.told)
+        possible = self._possible()
+        for candidate in moves.candidates(self.known.model, seed=len(self.moves)):
+            programme = moves.safe(candidate, possible)
+            predicted = self._predicted(programme) if programme else None
+            if predicted is not None and (share := shrinkage(self.known.told, *predicted)) > best[0]:
+                best = share, programme, predicted[0]
+        return best
+
+    def run(self) -> Commissioned:
+        """All stages; ends where the next minute would gain less than a tenth, or after `minutes` of moves.
+
+        Raises DataError where nothing can be moved within the limits.
+        """
+        if not self.moves:
+            self.wiring()
+        self.basics()
+        if not self.runs:
+            raise DataError("no trial can be made that stays within the stroke; give the machine file narrower figures")
+        for _ in range(MOST):
+            share, programme, more = self.best_move()
+            name = programme.experiment if programme else "nothing"
+            self.tell(f"another minute, best with {name}, would narrow the intervals by {100 * share:.0f} %")
+            spent = sum(move.seconds for move in self.moves)
+            if programme is None or share < ENOUGH or spent >= MINUTE * self.minutes:
+                break
+            free = self.known.known
+            expected = dict(zip(free.names, self.known.told.beside(more).deviations() * free.prior, strict=True))
+            self._take(name, programme)
+            found = {one: self.known.deviations[one] for one in expected}
+            done = replace(self.moves[-1], predicted={n: float(d) for n, d in expected.items()}, found=found)
+            self.moves[-1] = done
+            self.tell(f"{name}: {done.seconds:.0f} s; deviations {done.ratio:.2f} times the predicted ones")
+        known = settled(self.model, self.known, self.runs)
+        return Commissioned(self.model, self.wired, tuple(self.moves), known, tuple(self.runs), share, name)
+
+    # --- performing ---------------------------------------------------------------------------------------------------
+
+    def _possible(self) -> list[Model]:
+        """The machine as found, and some as it may be."""
+        known = self.known
+        return [known.model, *moves.drawn(known.model, known.deviations, moves.DRAWN, len(self.moves))]
+
+    def _take(self, name: str, programme: Programme) -> None:
+        self._learn(name, self._performed(programme, name))
+
+    def _learn(self, name: str, done: Performed) -> None:
+        """Fit the machine to what was recorded, too."""
+        self.moves.append(Move(name, _names(done), done.seconds))
+        for recording in done.recordings:
+            self.runs.append(self._run(recording))
+        self.known = knowledge(self.model, self.runs)
+
+    def _performed(self, programme: Programme, name: str) -> Performed:
+        """Performed, with smaller voltages where a limit was reached, and larger ones where the piston did not move.
+
+        DataError where the plant ends it otherwise.
+        """
+        words = self.words if programme.blind else self.wired.words
+        recordings: list[Recording] = []
+        seconds = 0.0
+        tried = programme
+        for again in range(1 + AGAIN):
+            folder = f"{len(self.moves):02d}_{name}" + (f"_{again}" if again else "")
+            done = self.perform(tried, words, folder)
+            seconds += done.seconds
+            recordings += done.recordings
+            if done.complete:
+                return Performed(tuple(recordings), seconds)
+            share = moves.other(done.reason)
+            if share is None:
+                raise DataError(f"{name}: {done.reason}")
+            self.tell(f"{name}: {done.reason}; tried again with {'smaller' if share < 1.0 else 'larger'} voltages")
+            left = tried.trials[len(done.recordings) :]
+            dead = max(dead_zone(centred(self.known.model)))
+            tried = moves.smaller(replace(tried, trials=left), dead, share)
+        if recordings:
+            return Performed(tuple(recordings), seconds, done.reason)
+        raise DataError(f"{name}: {done.reason}, after {AGAIN} trials with other voltages")
+
+    def _run(self, recording: Recording) -> Run:
+        return as_run(recording, self.model, self.wired.words)
+
+    def _predicted(self, programme: Programme) -> tuple[Told, float] | None:
+        """What the programme would tell on the machine as found, and its seconds; None where it cannot be made."""
+        run, model = self.runs[-1], self.known.model
+        pressures = [run.noise[name] for name in (chamber.signal for chamber in model.chambers)]
+        noise = Noise(run.noise["position_m"], float(np.mean(pressures)))
+        rig = SimulatedRig(model, sample_time=run.sample_time, noise=noise, seed=1)
+        try:
+            done = rig.perform(programme, (), "predicted")
+            evidence = Evidence(self.model, [as_run(recording, model, ()) for recording in done.recordings])
+            return told(evidence, model, self.known.known, self.known.told.scales), done.seconds
+        except (DataError, NumericalError, ValueError):
+            return None
+
+
+def _names(done: Performed) -> tuple[str, ...]:
+    return tuple(recording.name for recording in done.recordings)

@@ -1,0 +1,132 @@
+"""What recordings tell of a machine's parameters, and what a trial that was not made yet would tell.
+
+Both come from the equations in weak form along the recorded motion (`diagnose.evidence`): fitted within what data
+sheets say, their slopes over the parameters give the covariance, with errors correlated within blocks (Liang and Zeger
+1986). A trial that was not made is simulated on the machine as known so far. A design that makes the determinant of the
+information large is D-optimal (Fedorov 1972).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pneumo_ros.diagnose.basefit import Known, slopes
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.fitter import UNSEEN, Fitter
+from pneumo_ros.diagnose.hypothesis import cluster_robust, family_scales, weights
+from pneumo_ros.equations.breakaway import find_breakaways
+from pneumo_ros.identify.presliding import fit_presliding
+from pneumo_ros.plant import Model
+from pneumo_ros.runs.clock import on_one_clock
+from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.estimates import Estimate
+from pneumo_ros.shooting.refit import default_free, default_prior
+
+Array = NDArray[np.float64]
+MINUTE = 60.0  # s
+NORMAL = 1.96  # deviations of a 95 % interval
+
+
+@dataclass(frozen=True)
+class Told:
+    """What runs tell: weighted slopes (residuals, parameters) per prior deviation, weighted residuals, their blocks."""
+
+    slopes: Array
+    residual: Array
+    block: NDArray[np.int64]
+    scales: dict[str, float]  # of each family of residuals, over its noise
+
+    @property
+    def information(self) -> Array:
+        """(parameters, parameters), in prior deviations, without the prior."""
+        return np.asarray(self.slopes.T @ self.slopes)
+
+    def deviations(self) -> Array:
+        """Standard deviations (parameters,) over those of the prior."""
+        ridge = np.ones(self.slopes.shape[1])
+        bread = np.linalg.inv(self.information + np.diag(ridge)).astype(np.float64)
+        robust = cluster_robust(self.slopes, self.residual, self.block, bread, ridge)
+        return np.sqrt(np.maximum(np.diag(robust), np.diag(bread)))
+
+    def beside(self, more: "Told") -> "Told":
+        """Both together."""
+        blocks = np.concatenate([self.block, more.block + 1 + int(self.block.max(initial=0))])
+        residual = np.concatenate([self.residual, more.residual])
+        return Told(np.concatenate([self.slopes, more.slopes]), residual, blocks, self.scales)
+
+
+def told(evidence: Evidence, model: Model, known: Known, scales: dict[str, float] | None = None) -> Told:
+    """What `evidence` tells about `known` at `model`; `scales`: of a trial that is simulated, those of real ones."""
+    residual, slope = slopes(evidence, model, known)
+    scale = family_scales(evidence, residual)
+    if scales is not None:
+        scale = np.array([scales.get(name, one) for name, one in zip(evidence.names, scale, strict=True)])
+        residual = residual * scale[evidence.family]
+    weight = weights(evidence, residual, scale)
+    named = dict(zip(evidence.names, (float(one) for one in scale), strict=True))
+    return Told(slope * weight[:, None], residual * weight, evidence.block, named)
+
+
+def shrinkage(now: Told, more: Told, seconds: float) -> float:
+    """Share by which a minute of trials that tell `more` in `seconds` shrinks the intervals: their geometric mean."""
+    eye = np.eye(len(now.information))
+    whole = now.information + eye
+    before, after = (np.linalg.slogdet(one)[1] for one in (whole, whole + more.information * (MINUTE / seconds)))
+    return float(1.0 - np.exp(-0.5 * (after - before) / len(eye)))
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """A machine fitted to runs, what they tell of it, and an estimate of every parameter that is uncertain."""
+
+    model: Model
+    known: Known
+    told: Told
+    estimates: dict[str, Estimate]
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of every parameter, in its unit."""
+        return {name: one.std for name, one in self.estimates.items()}
+
+
+def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
+    """`model`, as data sheets tell it, fitted to `runs`; without runs, what data sheets alone say."""
+    if not runs:
+        estimates = {
+            name: _estimate(model, name, model[name], default_prior(model, name)) for name in default_free(model)
+        }
+        nothing = Told(np.zeros((0, len(estimates))), np.zeros(0), np.zeros(0, dtype=np.int64), {})
+        empty = np.zeros(0)
+        return Knowledge(model, Known((), empty, empty, empty), nothing, estimates)
+    together = on_one_clock(runs)
+    fitter = Fitter(model, together, candidates=())
+    known = fitter.known(model)
+    found = fitter.refit(model)
+    what = told(fitter.train, found, known)
+    deviations = dict(zip(known.names, (what.deviations() * known.prior).tolist(), strict=True))
+    found, seen = _presliding(found, together)
+    estimates = {
+        name: _estimate(model, name, found[name], deviations.get(name, seen.get(name, default_prior(model, name))))
+        for name in default_free(model)
+    }
+    return Knowledge(found, known, what, estimates)
+
+
+def _estimate(before: Model, name: str, value: float, deviation: float) -> Estimate:
+    half = NORMAL * deviation
+    return Estimate(value, deviation, value - half, value + half, before[name], default_prior(before, name))
+
+
+def _presliding(model: Model, runs: Sequence[Run]) -> tuple[Model, dict[str, float]]:
+    """The model with the bristle stiffness that the deflection before breakaways shows, and its deviation."""
+    stiffness = UNSEEN[0]
+    if stiffness not in model.parameters:
+        return model, {}
+    found = fit_presliding(model, runs, [one for run in runs for one in find_breakaways(model, run)])
+    if stiffness not in found.intervals:
+        return model, {}
+    low, high = found.intervals[stiffness]
+    return model.with_parameters({stiffness: found.values[stiffness]}), {stiffness: (high - low) / (2.0 * NORMAL)}

@@ -1,0 +1,111 @@
+"""What the plumbing trial says of a rig's wiring, and what to swap."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.score import MARGIN
+from pneumo_ros.errors import DataError, PneumoError
+from pneumo_ros.plant import Model
+from pneumo_ros.reading.read import ATMOSPHERE
+from pneumo_ros.reading.rig_guess import APART, guess_rig
+from pneumo_ros.records import Recording
+from pneumo_ros.records.corrections import corrected, wiring
+from pneumo_ros.runs.clock import on_one_clock
+from pneumo_ros.runs.run import Run, check_position, run_for
+
+FAULTS = {  # words that say that a plug, a hose or a sign is wrong, and how to mend it
+    "swapped-chambers": "swap the plugs of the two pressure sensors (each shows the other chamber)",
+    "reversed-position": "reverse the sign of the position sensor (it falls while the rod extends)",
+    "reversed-voltage": "swap the two hoses between valve and cylinder, or reverse the sign of the command (a positive "
+    "command retracts the rod)",
+}
+STEADY = 1e-4  # of its mean: a pressure that moves by less shows nothing
+TRIED = 8  # wirings that explain the trial alike, fitted
+MOVED = 0.004  # m, the least that one of the ramps must have moved
+
+
+class UnmovedError(DataError):
+    """The piston hardly moved."""
+
+
+@dataclass(frozen=True)
+class Wired:
+    """The wiring: words of --read-as, those of them that are faults, and whether no other wiring explains the trial."""
+
+    words: tuple[str, ...]
+    certain: bool
+
+    @property
+    def faults(self) -> dict[str, str]:
+        """What to mend, by word."""
+        return {word: FAULTS[word] for word in self.words if word in FAULTS}
+
+
+def find_wiring(
+    recordings: Sequence[Recording], model: Model, known: Sequence[str] = (), sensors: Sequence[str] | None = None
+) -> Wired:
+    """The wiring that recordings show, that of the plumbing trial first; a `known` closed signal is not guessed.
+
+    `sensors`: unit of the pressures, and gauge or not, as words; None: to be guessed.
+
+    Raises DataError, with what to look at, where a sensor is dead, UnmovedError where the piston hardly moved.
+    """
+    _check_alive(recordings[0], model)
+    found = guess_rig(recordings, model, sensors, [word for word in known if word.startswith("closed=")])
+    alike = [one for one in found.ranked if one.size <= APART * found.best.size][:TRIED]
+    fits = {one.words: _fits(recordings, model, one.words) for one in alike} if len(alike) > 1 else {}
+    best, *others = sorted(fits, key=lambda words: -fits[words]) or [found.best.words]
+    return Wired(best, not others or fits[best] > fits[others[0]] + MARGIN)
+
+
+def _fits(recordings: Sequence[Recording], model: Model, words: tuple[str, ...]) -> float:
+    """Log likelihood of the recordings wired as `words` say, with the machine fitted within what its file says.
+
+    Mirror images move alike and differ by the areas of the piston: wired wrongly, volumes and friction have to give.
+    """
+    try:
+        runs = on_one_clock([as_run(recording, model, words) for recording in recordings])
+        fitter = Fitter(model, runs, candidates=())
+        fitted = fitter.refit(model)
+        fitted.state()  # a machine that can be
+        return fitter.likelihood(fitted)
+    except PneumoError:
+        return -math.inf
+
+
+def as_run(recording: Recording, model: Model, words: Sequence[str]) -> Run:
+    """The recording as a run of `model`, wired as `words` say.
+
+    Gauge sensors are not looked for once more: figures of data sheets are too rough. Raises DataError for a recording
+    that cannot be used.
+    """
+    atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
+    run = run_for(corrected(recording, words, atmosphere), model)
+    check_position(model, run)
+    return run
+
+
+def _check_alive(recording: Recording, model: Model) -> None:
+    position = recording.position
+    if float(np.ptp(position)) == 0.0:
+        raise DataError("the position never changes: is its sensor plugged in, and the supply pressure on?")
+    dead = [
+        side
+        for side, signal in (("a", recording.pressure_a), ("b", recording.pressure_b))
+        if signal is None or float(np.ptp(signal)) <= STEADY * max(float(np.abs(signal).mean()), 1e-12)
+    ]
+    if dead:
+        topics = " and ".join(f"chamber_{side}/pressure" for side in dead)
+        raise DataError(f"{topics} never changes while the valve opens both ways: is the sensor plugged in?")
+    metres = wiring(("mm",)).length if float(np.ptp(position)) > 2.0 * model["piston.stroke"] else 1.0
+    if metres * float(np.ptp(position)) < MOVED:
+        largest = float(np.abs(recording.voltage).max()) if recording.voltage is not None else 0.0
+        raise UnmovedError(
+            f"the piston moved by {1e3 * metres * float(np.ptp(position)):.1f} mm only, with commands up to "
+            f"{largest:.2f} V: is the supply pressure on, does the valve get the command, is the piston free? A valve "
+            "with a wider dead zone needs dead_zone limits in the machine file"
+        )

@@ -1,0 +1,40 @@
+"""What else recordings may hold beside motion, chamber pressures and the command: one row for each signal.
+
+Every room takes it from here: recordings and bags read and write it, maps of tables have it, the terminal shows it, and
+effects read it as an input of that name. A new sensor is one row, and one effect if it has a law.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One row: its name in recordings and maps of tables, topic, SI unit, meaning, and its name in equations.
+
+    `dimensions` of the units in which a table may have it; `shown`: unit and factor for the terminal; `flips`: whether
+    its sign changes with that of the position. The topic is a std_msgs/Float64 unless the contract says otherwise.
+    """
+
+    name: str
+    topic: str
+    unit: str
+    meaning: str
+    input: str
+    dimensions: tuple[str, ...]
+    shown: tuple[str, float]
+    flips: bool = False
+
+
+MEASURED = (
+    Measured(
+        "supply_pressure", "supply/pressure", "Pa", "measured supply pressure, absolute", "measured_supply",
+        ("pressure",), ("bar", 1e-5),
+    ),
+    Measured(
+        "load_cell", "load_cell", "N", "measured rod force, positive where positive positions are", "load_force",
+        ("force", "torque"), ("N", 1.0), flips=True,
+    ),
+)  # fmt: skip
+
+OWN = ("supply_pressure", "load_cell")  # those with a message type and a field of recordings of their own
+PLAIN = {one.name: one for one in MEASURED if one.name not in OWN}

@@ -1,0 +1,77 @@
+"""The answer of a diagnosis on one page: what is missing, its size, how sure that is, what to do at the machine."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pneumo_ros.compare.wording import times
+from pneumo_ros.diagnose.outcome import ADEQUATE, UNKNOWN
+from pneumo_ros.diagnose.score import MARGIN
+from pneumo_ros.wording.additions import ParameterWords, parameter
+from pneumo_ros.wording.naming import listed
+from pneumo_ros.wording.table import Table
+
+# equation -> the parts of the machine that it describes
+PLACES = {
+    "momentum": "piston, rod, guide and load",
+    "chamber_a": "chamber a, its hose and its port of the valve",
+    "chamber_b": "chamber b, its hose and its port of the valve",
+}
+
+
+@dataclass(frozen=True)
+class AnswerWords:
+    """One added effect: its size with the 95 % interval, how sure it is, and how a person recognises it."""
+
+    effect: str
+    size: str
+    sure: str
+    shows: str  # empty for an effect that does not say
+
+
+def answers(result: Mapping[str, Any]) -> tuple[AnswerWords, ...]:
+    """A line for each addition in the JSON of `diagnose`."""
+    return tuple(_answer(one) for one in result["added"])
+
+
+def _answer(one: Mapping[str, Any]) -> AnswerWords:
+    effect = str(one["effect"])
+    sizes = [_size(parameter(effect, key, value)) for key, value in one["parameters"].items()]
+    return AnswerWords(effect, "; ".join(sizes) or "no parameter", _sure(one), one.get("signature", ""))
+
+
+def _size(one: ParameterWords) -> str:
+    """'conductance 3.0e-10 kg/(s Pa) (95 %: 2.9e-10 to 3.1e-10)'."""
+    span = one.interval if one.interval == "not determined" else f"95 %: {one.interval}"
+    return f"{one.key.replace('_', ' ')} {one.value} {one.unit}".rstrip() + f" ({span})"
+
+
+def _sure(one: Mapping[str, Any]) -> str:
+    """The evidence, the held-out error without and with it, and whether another effect explains as much."""
+    rivals = one["indistinguishable_from"]
+    alone = f"{listed(rivals, 'or')} would explain as much" if rivals else "no other effect explains as much"
+    nats = f"{one['score']['nats']:.0f} nats of evidence, {MARGIN:g} are asked" if "score" in one else ""
+    error = f"held-out error {times(one['holdout_error_before'])} -> {times(one['holdout_error_after'])}"
+    return "; ".join(part for part in (nats, error, alone) if part)
+
+
+def answers_table(found: tuple[AnswerWords, ...]) -> Table:
+    """A row for each effect."""
+    rows = tuple((one.effect, one.size, one.sure, one.shows) for one in found)
+    return Table("", ("what is missing", "its size", "how sure", "how it shows"), rows)
+
+
+def remedies(found: Mapping[str, str]) -> tuple[str, ...]:
+    """A sentence for each effect that says what to do about it; found: effects and their remedies, "" for none."""
+    return tuple(f"At the machine, for {effect}: {remedy}." for effect, remedy in found.items() if remedy)
+
+
+def at_the_machine(result: Mapping[str, Any]) -> tuple[str, ...]:
+    """A sentence for each effect that says what to do; one sentence where nothing is missing."""
+    if result["verdict"] == ADEQUATE:
+        return ("At the machine there is nothing to do: the model explains these recordings.",)
+    known = remedies({one["effect"]: one.get("remedy", "") for one in result["added"]})
+    left = result["unexplained"]
+    if result["verdict"] != UNKNOWN or not left:
+        return known
+    return (*known, f"At the machine, look at {PLACES[left['equation']]}: no known effect explains what happens there.")

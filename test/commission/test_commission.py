@@ -1,0 +1,199 @@
+"""Commissioning of simulated rigs: wiring, safe moves, predictions of what a move tells, and what comes out."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pneumo_ros.commission import moves
+from pneumo_ros.commission.commission import Commissioned, Commissioning
+from pneumo_ros.commission.information import knowledge
+from pneumo_ros.commission.performing import Performed
+from pneumo_ros.commission.simulated import SimulatedRig
+from pneumo_ros.commission.summary import errors, summary
+from pneumo_ros.commission.wiring import UnmovedError, find_wiring
+from pneumo_ros.errors import DataError
+from pneumo_ros.experiment.catalogue import make_programme
+from pneumo_ros.experiment.plumbing import plumbing
+from pneumo_ros.experiment.programme import Programme
+from pneumo_ros.experiment.rehearsal import rehearse
+from pneumo_ros.parts.design import Wishes, design
+from pneumo_ros.parts.shelf import load_shelf
+from pneumo_ros.plant import Model
+from pneumo_ros.records.corrections import wiring
+
+WISHES = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
+OFF = {
+    "arctan_flow.voltage_gain": 1.3, "lugre_friction.coulomb_friction": 1.2, "lugre_friction.static_friction": 1.2,
+    "chambers.volume_a": 1.05, "chambers.volume_b": 1.1,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def sheet() -> Model:
+    """The machine as data sheets tell it."""
+    return design(WISHES, load_shelf([])).model
+
+
+@pytest.fixture(scope="module")
+def truth(sheet: Model) -> Model:
+    """The machine as it is."""
+    return sheet.with_parameters({name: share * sheet[name] for name, share in OFF.items()})
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (),
+        ("swapped-chambers",),
+        ("reversed-voltage", "gauge", "bar"),
+        ("reversed-position", "mm", "zero=100mm"),
+        ("swapped-chambers", "reversed-position", "reversed-voltage"),
+        ("swapped-chambers", "reversed-voltage", "gauge", "kPa", "mm", "zero=-100mm"),
+    ],
+)
+def test_ten_seconds_tell_the_wiring(sheet: Model, truth: Model, words: tuple[str, ...]) -> None:
+    sensors = tuple(word for word in words if word in ("gauge", "bar", "kPa"))
+    rig = SimulatedRig(truth, words, position=0.02)
+    job = Commissioning(sheet, rig.perform, sensors=sensors)
+    found = job.wiring()
+    assert set(found.words) == set(words)
+    assert found.certain
+    assert set(found.faults) == {word for word in words if word.startswith(("swapped", "reversed"))}
+    assert job.moves[0].seconds < 15.0
+
+
+def test_a_closed_signal_that_is_known_is_not_guessed(sheet: Model, truth: Model) -> None:
+    """4.6 V is the middle of no usual range."""
+    rig = SimulatedRig(truth, ("closed=4.6V", "reversed-voltage"))
+    found = Commissioning(sheet, rig.perform, ("closed=4.6V",), ()).wiring()
+    assert set(found.words) == {"closed=4.6V", "reversed-voltage"}
+
+
+def test_a_command_is_sent_and_a_position_read_as_the_words_say() -> None:
+    wired = wiring(("mm", "zero=100mm", "reversed-position", "reversed-voltage", "closed=5V"))
+    assert wired.position(120.0) == pytest.approx(-0.02)
+    assert wired.command(2.0) == pytest.approx(3.0)
+
+
+def test_a_dead_sensor_and_a_piston_that_stays_are_named(sheet: Model, truth: Model) -> None:
+    done = SimulatedRig(truth).perform(plumbing(sheet), (), "plumbing")
+    (recording,) = done.recordings
+    with pytest.raises(DataError, match="chamber_b/pressure never changes"):
+        find_wiring([replace(recording, pressure_b=np.full(len(recording), 1e5))], sheet)
+    with pytest.raises(DataError, match="the position never changes"):
+        find_wiring([replace(recording, position=np.zeros(len(recording)))], sheet)
+    with pytest.raises(UnmovedError, match="is the supply pressure on"):
+        find_wiring([replace(recording, position=0.01 * recording.position)], sheet)
+
+
+def test_a_piston_that_stays_is_pushed_harder(sheet: Model, truth: Model) -> None:
+    rig, largest, said = SimulatedRig(truth), list[float](), list[str]()
+
+    def perform(programme: Programme, words: tuple[str, ...], name: str) -> Performed:
+        done = rig.perform(programme, words, name)
+        largest.append(programme.trials[0].voltage.largest)
+        still = tuple(replace(one, position=0.01 * one.position) for one in done.recordings)
+        return replace(done, recordings=still) if len(largest) == 1 else done
+
+    Commissioning(sheet, perform, sensors=(), tell=said.append).wiring()
+    assert largest[0] < largest[1]
+    assert "tried again with larger ones" in said[0]
+
+
+def test_moves_are_made_small_enough_for_every_machine_that_may_be(sheet: Model) -> None:
+    wide = {"arctan_flow.voltage_gain": 0.02, "lugre_friction.coulomb_friction": 3.0}
+    machines = [sheet, *moves.drawn(sheet, wide, 4, 3)]
+    programme = moves.dynamic(sheet)
+    assert any("end stop" in rehearse(programme, one).aborted for one in machines)
+    made = moves.safe(programme, machines)
+    assert made is not None
+    assert not any("end stop" in rehearse(made, one).aborted for one in machines)
+    assert made.trials[0].voltage.largest < programme.trials[0].voltage.largest
+
+
+def test_a_trial_that_reaches_the_limit_is_tried_smaller(sheet: Model, truth: Model) -> None:
+    rig, tried = SimulatedRig(truth), []
+
+    def perform(programme: Programme, words: tuple[str, ...], name: str) -> Performed:
+        tried.append((name, programme.trials[0].voltage.largest))
+        if len(tried) == 1:
+            return Performed((), 1.0, "the piston has reached the end stop, +0.100 m (end: 0.099 m)")
+        return rig.perform(programme, words, name)
+
+    job = Commissioning(sheet, perform, sensors=())
+    job._take("static", moves.static(sheet))
+    assert [name for name, _ in tried] == ["00_static", "00_static_1"]
+    assert tried[1][1] < tried[0][1]
+
+
+@pytest.fixture(scope="module")
+def commissioned(sheet: Model, truth: Model) -> tuple[Commissioned, SimulatedRig, list[str]]:
+    """A commissioning of less than a minute and a half."""
+    rig, said = SimulatedRig(truth, ("gauge", "bar")), list[str]()
+    found = Commissioning(sheet, rig.perform, (), ("gauge", "bar"), 1.4, said.append).run()
+    return found, rig, said
+
+
+def test_the_machine_is_found_with_intervals(commissioned: tuple[Commissioned, SimulatedRig, list[str]]) -> None:
+    found, rig, _ = commissioned
+    assert rig.farthest < 0.1
+    known = found.knowledge.estimates
+    assert (
+        abs(found.machine["lugre_friction.coulomb_friction"] / rig.truth["lugre_friction.coulomb_friction"] - 1) < 0.02
+    )
+    assert abs(found.machine["chambers.volume_b"] / rig.truth["chambers.volume_b"] - 1) < 0.005
+    for name, one in known.items():
+        if one.determined:
+            assert one.std < 0.5 * one.prior
+            assert one.low - one.std < rig.truth[name] < one.high + one.std, name
+    assert found.machine.uncertainty["chambers.volume_a"] == pytest.approx(known["chambers.volume_a"].std)
+
+
+def test_what_a_move_tells_is_predicted(commissioned: tuple[Commissioned, SimulatedRig, list[str]]) -> None:
+    found, _, said = commissioned
+    ratios = [move.ratio for move in found.moves if move.predicted]
+    assert ratios
+    assert all(1.0 / 1.5 < ratio < 1.5 for ratio in ratios)
+    assert any("another minute" in text for text in said)
+    assert found.left > 0.0
+
+
+def test_its_summary_is_plain_data(commissioned: tuple[Commissioned, SimulatedRig, list[str]]) -> None:
+    found = commissioned[0]
+    told = summary(found)
+    assert told["seconds"] == pytest.approx(sum(move["seconds"] for move in told["moves"]))
+    assert told["parameters"]["chambers.volume_a"]["unit"] == "m3"
+    before, after = errors(found)
+    assert after < 0.2 * before
+
+
+def test_without_runs_data_sheets_are_all_that_is_known(sheet: Model) -> None:
+    known = knowledge(sheet, ())
+    name = "lugre_friction.coulomb_friction"
+    assert known.deviations[name] == sheet.uncertainty[name]
+    assert known.model is sheet
+
+
+def test_a_valve_that_closes_at_5_v_gets_no_more_than_its_range(sheet: Model, truth: Model) -> None:
+    """Moves are planned about the closed signal: no 10 V beside 5 V, and swapped hoses mirror it there."""
+    offset = {"valve_null_offset.offset": -5.0}
+    behind, real = (one.with_effects(["valve_null_offset", *one.effects], offset) for one in (sheet, truth))
+    for one in [moves.static(behind), moves.dynamic(behind), *moves.candidates(behind, seed=1)]:
+        assert one.closed == 5.0
+        assert max(trial.voltage.largest for trial in one.trials) <= 5.0
+    programme = make_programme("constant-voltage", behind, (1.0, 9.0))
+    assert [trial.voltage.largest for trial in programme.trials] == [1.0, 1.0]
+    rig = SimulatedRig(real, ("reversed-voltage", "closed=10V"), position=0.02)
+    found = Commissioning(behind, rig.perform, sensors=()).wiring()
+    assert set(found.words) == {"reversed-voltage", "closed=10V"}
+
+
+def test_ramps_stay_about_where_the_piston_stood(sheet: Model, truth: Model) -> None:
+    """A piston that coasts farther one way than the other is not taken to an end stop, step by step."""
+    for position in (-0.04, 0.0, 0.04):
+        rig = SimulatedRig(truth, ("reversed-position",), position=position)
+        programme = plumbing(sheet)
+        (found,) = rig.perform(programme, (), "plumbing").recordings
+        assert rig.farthest < programme.high
+        assert np.ptp(found.position) > 0.03
