@@ -34,6 +34,10 @@ MEASURED = (
         "load_cell", "load_cell", "N", "measured rod force, positive where positive positions are", "load_force",
         ("force", "torque"), ("N", 1.0), flips=True,
     ),
+    Measured(
+        "flow_a", "chamber_a/flow", "kg/s", "measured mass flow into chamber a", "metered_flow_a",
+        ("mass flow",), ("g/s", 1e3),
+    ),
 )  # fmt: skip
 
 OWN = ("supply_pressure", "load_cell")  # those with a message type and a field of recordings of their own
