@@ -113,6 +113,13 @@ def write_csv(recording: pn.Recording, path: Path) -> None:
         writer.writerows(zip(*(np.round(one, 7).tolist() for one in columns), strict=True))
 
 
+def commissioned(folder: Path) -> None:
+    """What a commissioning leaves: its machine, its rig file and its moves."""
+    pn.save_model(pn.load_model("axis"), folder / "mine.yaml")
+    (folder / "mine_rig.yaml").write_text("rig: {machine: mine.yaml, closed: 0V}\n")
+    recorded(folder / "mended", {"03_sines/train_sines": "sine:3,0.5", "19_sweep/train_sweep": "sine:5,0.9"})
+
+
 def arm(folder: Path) -> None:
     """An arm that its cylinder lifts."""
     (folder / "arm.xml").write_text(ARM)
@@ -128,6 +135,7 @@ def rigs(folder: Path) -> None:
 
 MADE: dict[str, tuple[Callable[[Path], None], ...]] = {
     "README.md": (runs, constants, tables, leaky, rigs),
+    "commissioning.md": (commissioned,),
     "control.md": (axis_file,),
     "coupling.md": (my_file, arm),
     "export.md": (axis_file,),
@@ -135,6 +143,7 @@ MADE: dict[str, tuple[Callable[[Path], None], ...]] = {
     "fleet.md": (rigs,),
     "identification.md": (constant_runs,),
     "import.md": (tables,),
+    "nodes.md": (commissioned, my_file),
     "python.md": (named_runs, my_file),
     "recordings.md": (runs, my_file),
     "workbench.md": (runs, axis_file, effects_file),

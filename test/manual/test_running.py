@@ -33,40 +33,59 @@ def name(step: Step) -> str:
     return step.id if isinstance(step, Statement) else f"{step.page.name}-{step.number}-python"
 
 
+class Reader:
+    """Types a page from its top in a folder of its own; where one step is chosen alone, those before it as well."""
+
+    def __init__(self, page: Path, folder: Path) -> None:
+        self.folder = folder
+        self._left = [step for step in steps() if step.page == page]
+        prepare(page.name, folder)
+
+    def take(self, step: Step) -> None:
+        """This step, after those before it that were not taken; one that failed is not tried again for a later one."""
+        while step in self._left:
+            self._type(self._left.pop(0))
+
+    def _type(self, step: Step) -> None:
+        if isinstance(step, Statement):
+            typed = statements(step.page)
+            run(step, typed[: typed.index(step)], self.folder)
+            return
+        if "mujoco" in step.text:
+            pytest.importorskip("mujoco", reason="comes with the mujoco extra")
+        before = blocks(step.page)[: step.number]
+        defined = [one.text for one in before if re.search(r"^class ", one.text, re.MULTILINE)]
+        given = BEFORE.get((step.page.name, step.number), "")
+        run_python("\n".join([*defined, given, step.text]), self.folder)
+
+
 @pytest.fixture(scope="module")
-def folder_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
-    """The folder of a page, with what the page names, made once."""
-    made = dict[Path, Path]()
+def reader_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Reader]:
+    """The reader of a page, from its folder with what the page names."""
+    readers = dict[Path, Reader]()
 
-    def folder(page: Path) -> Path:
-        if page not in made:
-            made[page] = tmp_path_factory.mktemp(page.stem)
-            prepare(page.name, made[page])
-        return made[page]
+    def reader(page: Path) -> Reader:
+        if page not in readers:
+            readers[page] = Reader(page, tmp_path_factory.mktemp(page.stem))
+        return readers[page]
 
-    return folder
+    return reader
 
 
 @pytest.mark.check
 @pytest.mark.parametrize("step", steps(), ids=name)
-def test_it_runs(step: Step, folder_of: Callable[[Path], Path]) -> None:
-    folder = folder_of(step.page)
-    if isinstance(step, Statement):
-        typed = statements(step.page)
-        run(step, typed[: typed.index(step)], folder)
-        return
-    if "mujoco" in step.text:
-        pytest.importorskip("mujoco", reason="comes with the mujoco extra")
-    defined = [one.text for one in blocks(step.page)[: step.number] if re.search(r"^class ", one.text, re.MULTILINE)]
-    run_python("\n".join([*defined, BEFORE.get((step.page.name, step.number), ""), step.text]), folder)
-    if step.page.name == "python.md":
-        assert "viscous_friction" in (folder / "better.yaml").read_text()
-        assert (folder / "waterfall.png").stat().st_size > 5000
+def test_it_runs(step: Step, reader_of: Callable[[Path], Reader]) -> None:
+    reader = reader_of(step.page)
+    reader.take(step)
+    if step.page.name == "python.md" and isinstance(step, Block):
+        assert "viscous_friction" in (reader.folder / "better.yaml").read_text()
+        assert (reader.folder / "waterfall.png").stat().st_size > 5000
 
 
 @pytest.mark.check
-def test_the_tutorial_ends_with_a_better_machine_and_controller(folder_of: Callable[[Path], Path]) -> None:
-    """After the statements above."""
-    folder = folder_of(next(page for page in PAGES if page.name == "tutorial.md"))
-    assert "viscous_friction" in (folder / "better.yaml").read_text()
-    assert (folder / "my_cascade.yaml").exists()
+def test_the_tutorial_ends_with_a_better_machine_and_controller(reader_of: Callable[[Path], Reader]) -> None:
+    page = next(page for page in PAGES if page.name == "tutorial.md")
+    reader = reader_of(page)
+    reader.take([step for step in steps() if step.page == page][-1])
+    assert "viscous_friction" in (reader.folder / "better.yaml").read_text()
+    assert (reader.folder / "my_cascade.yaml").exists()

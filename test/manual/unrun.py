@@ -28,7 +28,7 @@ MORE = {  # pattern -> options that keep a check short
     r"pneumo workbench ": "--port 0",
 }
 SERVING = {  # pattern of a statement that runs until Ctrl-C -> what it says when it is up
-    r"simulator |controller |recorder ": r"ready|recording",
+    r"simulator |controller |recorder |commission ": r"ready|recording",
     r"pneumo workbench ": r"http://",
 }
 INSIDE = (0, 1)  # exit codes of a statement that worked: done, or done but outside what was asked
