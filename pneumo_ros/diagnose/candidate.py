@@ -28,6 +28,7 @@ class Candidate:
     score: Score  # nats that it gains over the model without it
     known: float = 0.0  # nats of them by which it agrees better with what was known of the model's parameters
     pays: float = 0.0  # share of the error of predictions of held-out runs that it removes, where that was asked
+    contained: bool = False  # whether an effect that contains it removes enough, and is hardly better
     lag: float = np.inf  # samples, of an effect that delays
     swing: float = np.inf  # samples in half a period, of an effect that oscillates
     refused: str = ""  # why it may not be added whatever its score
@@ -42,6 +43,11 @@ class Candidate:
     def least(self) -> float:
         """Share of the misfit beyond noise, or of the error of predictions, that it must remove."""
         return SHARE_LEAST[0 if self.first else 1]
+
+    @property
+    def partial(self) -> bool:
+        """Whether it removes too little of what is left to be more than something that resembles it."""
+        return max(self.share, self.pays) < self.least and not self.contained
 
     @property
     def undecided(self) -> bool:
@@ -60,7 +66,7 @@ class Candidate:
             found.append(f"held-out recordings lose {-self.score.held:.1f} nats with it")
         if self.size < MATERIAL and self.pays < self.least:
             found.append(f"its size is only {self.size:.2g} times the usual one")
-        if max(self.share, self.pays) < self.least:
+        if self.partial:
             found.append(f"removes only {100.0 * self.share:.0f} % of the misfit beyond noise")
         if self.lag < 1.0:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")

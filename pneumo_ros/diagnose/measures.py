@@ -11,8 +11,10 @@ Rows = NDArray[np.bool_]
 
 MOST_BLOCK = 3.0  # largest log likelihood of one block of time, or event: it takes several to decide
 ACTS = 0.25  # noise deviations: an effect acts where it changes a residual by more
+FORCES = ("momentum", "breakaway")  # equations in newtons
 FEWEST_WINDOWS = 30  # windows where an effect acts: a family with fewer is not judged there; windows overlap
 FEWEST_OF = {"breakaway": 8}  # the same for families without overlap
+MATERIAL_FORCE = 0.007  # of the drive force: a smaller misfit is a texture of friction that no model has
 NOISE = {"breakaway": 0.56}  # mean square of noise alone, where it is not 1: the stated spread is larger
 
 
@@ -50,15 +52,28 @@ def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = N
 
 
 def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
-    """Largest reduction, over the equations, from `before` to `after`, as a share of the mean square beyond noise.
+    """Largest reduction, over the equations, from `before` to `after`, as a share of the misfit that matters.
 
-    In `rows` (residuals,); over all breakaways if `rows` holds too few of them, as when each changes a little.
+    That is the mean square beyond noise, and beyond a texture of forces. In `rows` (residuals,); over all breakaways if
+    `rows` holds too few of them, as when each changes a little.
     """
     whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEWEST_OF} for r in (before, after)]
     first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
-    noise = {name: NOISE.get(name, 1.0) for name in first}
-    shares = ((first[n] - second[n]) / max(first[n] - noise[n], 0.1 * noise[n]) for n in first)
+    noise, rough = {name: NOISE.get(name, 1.0) for name in first}, texture(evidence)
+    shares = ((first[n] - second[n]) / max(first[n] - noise[n] - rough.get(n, 0.0), 0.1 * noise[n]) for n in first)
     return max(shares, default=0.0)
+
+
+def texture(evidence: Evidence) -> dict[str, float]:
+    """By equation of forces, the mean square over noise of a texture of friction, as large as does not matter."""
+    found: dict[str, list[float]] = {}
+    for k, name in enumerate(evidence.names):
+        if equation_of(name) in FORCES:
+            noise = evidence.noise[evidence.family == k]
+            found.setdefault(equation_of(name), []).append(
+                float(np.median((MATERIAL_FORCE * evidence.drive / noise) ** 2))
+            )
+    return {name: float(np.mean(values)) for name, values in found.items()}
 
 
 def acting(before: Array, after: Array) -> Rows:

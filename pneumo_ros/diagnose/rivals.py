@@ -1,6 +1,7 @@
 """Effects that recordings do not distinguish, and the simpler one of two that explain the same."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,16 +37,21 @@ def _likeness(one: Array, other: Array) -> float:
     return float(one @ other) / size if size else 0.0
 
 
-def simplest(base: BaseFit, held: BaseFit, good: Sequence[Candidate]) -> Candidate | None:
-    """The first of `good`, or a simpler effect that it contains if the runs do not need more; None if there is none.
+def simplest(base: BaseFit, held: BaseFit, candidates: Sequence[Candidate]) -> Candidate | None:
+    """The first candidate without objections, or a simpler effect that it contains if the runs do not need more.
 
-    The runs need more when they distinguish the two effects, and the difference is significant.
+    None if there is none. The runs need more when they distinguish the two effects, and the difference is significant.
+    That the simpler one removes too little for itself is then no objection: the other one hardly removes more.
     """
-    for other in good[1:]:
-        little = _between(held, good[0], other) < MATERIAL
-        if other.name in _contained(base, good[0]) and (little or _tied(good[0], other)):
-            return other
-    return good[0] if good else None
+    best = next((one for one in candidates if not one.objections), None)
+    if best is None:
+        return None
+    for one in candidates:
+        other = replace(one, contained=True) if one.partial else one
+        if one.name in _contained(base, best) and not other.objections:
+            if _between(held, best, other) < MATERIAL or _tied(best, other):
+                return other
+    return best
 
 
 def _between(held: BaseFit, best: Candidate, other: Candidate) -> float:

@@ -227,7 +227,7 @@ class Search:
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
         if all(candidate.objections for candidate in candidates):
             candidates = self.asked(model, candidates)
-        best = simplest(base, held, [candidate for candidate in candidates if not candidate.objections])
+        best = simplest(base, held, candidates)
         others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
         blind = {} if best else self.unseen(model, ranking)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict
 from pneumo_ros.compare.wording import SIGNALS, amount, percent
+from pneumo_ros.diagnose.measures import MATERIAL_FORCE
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
 from pneumo_ros.diagnose.prediction import WORSE, typical_error, usual_errors
 from pneumo_ros.plant import Model
@@ -25,7 +26,6 @@ Array = NDArray[np.float64]
 
 SIGNIFICANT = 1.3  # times the noise: a larger error is more than noise and coarse sums explain
 BEYOND_SCATTER = 2.0  # standard errors of the change of predictions between windows
-MATERIAL_FORCE = 0.007  # of the drive force: a smaller misfit is a texture of friction that no model has
 LARGE = 0.05  # of the drive force, of the flow, or of a signal's change within the horizon
 SHAPE_LEFT = 0.25  # of the base's mean square: a smaller misfit is an inexact law of an added effect
 

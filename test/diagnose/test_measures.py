@@ -7,11 +7,17 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, MOST_BLOCK, acting, explained, gains, together
+from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, MATERIAL_FORCE, MOST_BLOCK, acting, explained, gains, together
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
 NOISE = np.random.default_rng(0).normal(size=N)
 EVIDENCE = cast(Evidence, SimpleNamespace(names=("chamber_a 200 ms",), family=np.zeros(N, dtype=np.int64)))
+
+
+def breakaways(count: int, drive: float = 0.0) -> Evidence:
+    """Breakaways known to 1 N on a machine whose drive force is `drive` [N]."""
+    family, noise = np.zeros(count, dtype=np.int64), np.ones(count)
+    return cast(Evidence, SimpleNamespace(names=("breakaway",), family=family, noise=noise, drive=drive))
 
 
 def effect(windows: int = HERE, size: float = 1.5) -> np.ndarray:
@@ -43,7 +49,7 @@ def test_a_few_windows_say_nothing() -> None:
 
 def test_a_dozen_breakaways_do() -> None:
     """They do not overlap as windows do."""
-    slips = cast(Evidence, SimpleNamespace(names=("breakaway",), family=np.zeros(12, dtype=np.int64)))
+    slips = breakaways(12)
     after = np.random.default_rng(1).normal(0.0, 0.7, 12)
     assert explained(slips, after + 3.0, after, np.ones(12, dtype=bool)) > 0.8
 
@@ -59,7 +65,15 @@ def test_one_block_alone_decides_nothing(sign: float) -> None:
 @pytest.mark.parametrize(("name", "least"), [("breakaway", 0.9), ("chamber_a 200 ms", 0.0)])
 def test_breakaways_that_all_change_a_little_are_judged_together(name: str, least: float) -> None:
     """There are twenty of them at most, and their noise is generous: none changes by a quarter of it."""
-    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=np.zeros(20, dtype=np.int64)))
+    family, noise = np.zeros(20, dtype=np.int64), np.ones(20)
+    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=family, noise=noise, drive=0.0))
     before, after = np.full(20, 0.95), np.full(20, 0.75)
     assert not acting(before, after).any()
     assert explained(evidence, before, after, acting(before, after)) == pytest.approx(least, abs=0.1)
+
+
+def test_what_is_no_larger_than_a_texture_need_not_be_removed() -> None:
+    before, after = np.full(20, 2.0), np.full(20, 1.9)  # N
+    everywhere = np.ones(20, dtype=bool)
+    assert explained(breakaways(20), before, after, everywhere) < 0.25
+    assert explained(breakaways(20, drive=2.0 / MATERIAL_FORCE), before, after, everywhere) > 1.0

@@ -78,3 +78,18 @@ def test_a_small_part_that_recordings_only_just_show_is_no_reason_for_the_genera
     general = candidate("asymmetric_viscous_friction", NOISE)
     simple = candidate("viscous_friction", NOISE + 0.8 * TRACE, 99.0)
     assert simplest(base, base, [general, simple]) is simple
+
+
+def test_the_contained_one_is_taken_though_it_removes_too_little_for_itself() -> None:
+    general = candidate("asymmetric_viscous_friction", NOISE)
+    simple = replace(candidate("viscous_friction", NOISE, 99.0), share=0.1)
+    chosen = simplest(fit(), fit(), [general, simple])
+    assert chosen is not None
+    assert chosen.name == "viscous_friction"
+    assert not chosen.objections
+
+
+def test_what_removes_too_little_is_not_taken_where_the_general_one_does_too() -> None:
+    general = replace(candidate("asymmetric_viscous_friction", NOISE), share=0.1)
+    simple = replace(candidate("viscous_friction", NOISE, 99.0), share=0.1)
+    assert simplest(fit(), fit(), [general, simple]) is None
