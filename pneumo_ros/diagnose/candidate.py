@@ -51,8 +51,11 @@ class Candidate:
 
     @property
     def undecided(self) -> bool:
-        """Whether the recordings speak for it, but not enough, and nothing else is objected."""
-        enough = replace(self, score=Score(MARGIN - self.score.held, self.score.held))
+        """Whether the recordings speak for it, but not enough, and nothing else is objected.
+
+        Nor that it removes little: what is left may be something else, which neither shows nor excludes it.
+        """
+        enough = replace(self, score=Score(MARGIN - self.score.held, self.score.held), share=1.0)
         return 0.0 < self.score.nats < MARGIN and not enough.objections
 
     @property
