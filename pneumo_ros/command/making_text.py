@@ -17,10 +17,9 @@ def file_text(made: "Design", call: str) -> str:
     """The machine file: how it was made, how to use it, values with sources, and their uncertainty."""
     from pneumo_ros.plant.machine_file import machine_text
 
-    extend, retract = made.signal
     head = [
         f"Made by pneumo_ros {__version__}: {call}",
-        f"Valve: {extend:g} V extends, {retract:g} V retracts at full opening, closed at {made.closed:g} V.",
+        f"Command: {made.commands}.",
         "Sensors: absolute pressures in Pa."
         if not made.read_as
         else f"Sensors: read recordings with {_reading(made)}.",
@@ -42,7 +41,7 @@ def record(made: "Design", out: str) -> dict[str, Any]:
         }
         for name, value in model.parameters.items()
     }  # fmt: skip
-    signal = {"extend": made.signal[0], "retract": made.signal[1], "closed": made.closed}
+    signal = {"extend": made.signal[0], "retract": made.least, "closed": made.closed}
     return {
         "schema_version": 1, "machine_file": out, "effects": list(model.effects), "signal_v": signal,
         "read_as": made.read_as, "cautions": list(made.cautions), "sources": list(made.sources),
@@ -63,7 +62,7 @@ def said(made: "Design", result: dict[str, Any]) -> str:
          f"b {model['choked_flow.critical_ratio']:.2g}"),
         ("  mass", f"{model['piston.mass']:g} kg, load {model.parameters.get('constant_load.load', 0.0):.4g} N"),
         ("  friction", _spread(made, "lugre_friction.coulomb_friction", "N") + " sliding"),
-        ("  signal", f"{made.signal[0]:g} V extends, {made.signal[1]:g} V retracts, closed at {made.closed:g} V"),
+        ("  command", made.commands),
     ]  # fmt: skip
     for way, time in result.get("stroke_s", {}).items():
         rows.append((f"  stroke {way}", f"{_seconds(time['value'])}, 95 % within {_seconds(time['low'])} to "

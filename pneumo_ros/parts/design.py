@@ -10,6 +10,8 @@ from pneumo_ros.parts.quantity import parse, pressure
 from pneumo_ros.parts.shelf import Shelf
 from pneumo_ros.plant import Model
 
+SWITCHED = 1.0  # V from closed, beyond which a switched valve has its full flow
+
 
 @dataclass(frozen=True)
 class Wishes:
@@ -48,6 +50,38 @@ class Design:
         """Signal [V] at which the valve is closed."""
         return self.order.nominal.get("signal_closed", 0.0)
 
+    @property
+    def least(self) -> float:
+        """The lowest signal [V] that the valve of chamber a takes: a regulator's is 0 V."""
+        return 0.0 if self.order.ways == REGULATOR else self.signal[1]
+
+    @property
+    def commands(self) -> str:
+        """What commands do, in words: each kind of valve has its own."""
+        high, low = self.signal
+        if self.order.ways == REGULATOR:
+            bar = self.model["pressure_regulator.pressure_range"] / 1e5
+            return (
+                f"0 to {high:g} V are 0 to {bar:.3g} bar gauge in chamber a by valve/command, in chamber b by "
+                "valve_b/command; the rod extends where a is stronger; 0 V empties"
+            )
+        if self.order.ways == "2/2":
+            return (
+                f"{high:g} V fills chamber a and empties b without pause (extends), {low:g} V the other way; between, "
+                "in pulses; all valves closed at 0 V"
+            )
+        if self.order.ways:
+            return (
+                f"{high:g} V keeps chamber a filling and b emptying (extends), {low:g} V the other way; between, in "
+                "turn, half of each period at 0 V; these valves never close both ways"
+            )
+        if self.order.switched:
+            above, below = self.closed + SWITCHED, self.closed - SWITCHED
+            return (
+                f"above {above:g} V extends and below {below:g} V retracts, at full flow; closed at {self.closed:g} V"
+            )
+        return f"{high:g} V extends, {low:g} V retracts at full opening; closed at {self.closed:g} V"
+
 
 def design(said: Wishes, shelf: Shelf, name: str = "new") -> Design:
     """The machine of a user's words; UsageError, with what is allowed, for anything that makes none."""
@@ -83,19 +117,10 @@ def _cautions(order: Order) -> list[str]:
             "experiments with this machine file, which close it there, and keep pressure away from the rig while "
             "anything else commands it"
         )
-    if order.ways == REGULATOR:
+    if order.ways and order.ways != REGULATOR:
         found.append(
-            "each chamber has a regulator: valve/command is the pressure of chamber a, valve_b/command that of chamber "
-            "b, 0 to 10 V for the whole range, and 0 V empties"
-        )
-    elif order.ways:
-        found.append(
-            "commands become pulses of the valves, whose share of a period follows the command, half of it at 0 V; set "
-            "pulse_frequency and phase to those of the driver, or pulse_frequency 0 where the command itself switches"
-        )
-    elif order.switched:
-        found.append(
-            "this is a switched valve: any command above 1 V extends at full flow, any below -1 V retracts, 0 V closes"
+            "set pulse_frequency and phase to those of the driver, or pulse_frequency 0 where the command itself "
+            "switches"
         )
     if not order.ways and "valve_spool_dynamics" not in effects_of(order):
         found.append("nothing is known of how fast the valve follows: valve_spool_dynamics is left out")

@@ -17,7 +17,7 @@ from pneumo_ros.plant.effects.valve.choked_flow import NORMAL_DENSITY
 COULOMB, STATIC = "lugre_friction.coulomb_friction", "lugre_friction.static_friction"
 
 
-def made(**said: str) -> Design:
+def made(**said: str | None) -> Design:
     """The machine of some words; the rest is a cylinder of bore 32 with SMC SY7000 at 6 bar."""
     usual = {"cylinder": "iso15552-32-250", "valve": "smc-sy7000", "supply": "6barg", "mass": "10"}
     return design(Wishes(**(usual | said)), load_shelf())
@@ -145,7 +145,7 @@ def test_valves_that_serve_one_chamber_are_on_off_valves_with_the_published_time
     assert (model["on_off_valves.switch_on"], model["on_off_valves.switch_off"]) == (0.0035, 0.002)
     assert model.uncertainty["on_off_valves.switch_on"] > 0.0
     assert "on_off_valves.pulse_frequency" not in model.uncertainty, "the driver's choice"
-    assert any("pulses" in caution for caution in found.cautions)
+    assert any("pulse_frequency" in caution for caution in found.cautions)
 
 
 def test_a_regulator_serves_each_chamber_with_the_published_response() -> None:
@@ -158,6 +158,20 @@ def test_a_regulator_serves_each_chamber_with_the_published_response() -> None:
     wide = made(valve="smc-itvh2020", valve_flow="C 2", supply="25barg").model
     assert wide["pressure_regulator.pressure_range"] == pytest.approx(2e6)
     assert 0.1 < stroke_times(model, found.signal[0])[0] < 2.0
+
+
+@pytest.mark.parametrize(
+    ("said", "commands"),
+    [
+        ({"valve_flow": "C 2"}, "10 V extends, -10 V retracts at full opening; closed at 0 V"),
+        ({"valve_flow": "C 2", "signal": "0,5,10"}, "10 V extends, 0 V retracts at full opening; closed at 5 V"),
+        ({"valve": "smc-sy7000"}, "above 1 V extends and below -1 V retracts, at full flow; closed at 0 V"),
+        ({"valve": "smc-vq110u"}, "half of each period at 0 V; these valves never close both ways"),
+        ({"valve": "festo-vppe", "valve_flow": "C 2"}, "0 to 10 V are 0 to 6 bar gauge in chamber a by valve/command"),
+    ],
+)
+def test_each_kind_of_valve_says_what_its_commands_do(said: dict[str, str], commands: str) -> None:
+    assert commands in made(**{"valve": None} | said).commands
 
 
 def test_filling_and_exhaust_have_the_published_critical_ratios() -> None:
