@@ -56,11 +56,11 @@ class AddingResult(Result):
         return notebook.page(headline(data), self.errors[2] <= self.errors[1], table, course)
 
     def _page(self, origin: dict[str, Any]) -> Report:
-        from pneumo_ros.report.comparison import comparison_report
+        from pneumo_ros.report.adding import adding_report
 
         data = self.as_dict()
         compared = plain(self.detail.after.as_dict() | {"refit": data["refit"], "added": data["added"]})
-        return comparison_report(compared, self.detail.after, self.model, origin)
+        return adding_report(self.detail, data | {"headline": headline(data)}, compared, origin)
 
 
 def add(

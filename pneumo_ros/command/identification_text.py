@@ -1,11 +1,11 @@
 """What `pneumo identify` found, as text: the table, what is not determined, and which stretches were used."""
 
-import math
 import re
 from typing import Any
 
 from pneumo_ros.command.console import columns
 from pneumo_ros.compare.wording import number
+from pneumo_ros.wording.identification import estimate_words, sentences
 
 _SHOWN_STRETCHES = 4  # of a run; the others are counted
 
@@ -43,60 +43,10 @@ def parameters(result: dict[str, Any]) -> str:
     """The table: before, value, interval, unit, where from."""
     rows = [("", "before", "value", "95 % interval", "unit", "from")]
     for name, one in result["parameters"].items():
-        value, interval = _interval(one) if one["determined"] else (number(one["value"], 5), "-")
+        value, interval = estimate_words(one) if one["determined"] else (number(one["value"], 5), "-")
         source = one["source"] if one["determined"] else re.split("[:,]", one["source"])[0]
         rows.append((name, number(one["before"], 5), value, interval, one["unit"], source))
     return columns(rows, right=(1, 2))
-
-
-def _interval(one: dict[str, Any]) -> tuple[str, str]:
-    """Value and interval, to two figures of the interval's half width, at least three of the value."""
-    half = max(0.5 * (one["high"] - one["low"]), 1e-12 * abs(one["value"]))
-    size = max(abs(one["value"]), half)
-    digits = min(max(math.floor(math.log10(size)) - math.floor(math.log10(half)) + 2, 3), 9)
-    return number(one["value"], digits), f"{number(one['low'], digits)} to {number(one['high'], digits)}"
-
-
-def sentences(result: dict[str, Any]) -> list[str]:
-    """What is not determined, what is known only together, and whether the static map fits."""
-    said = [
-        f"Not determined: {name}, which keeps {_amount(result['parameters'][name])}: {why}."
-        for name, why in result["undetermined"].items()
-    ]
-    for name, one in result["parameters"].items():
-        if not one["determined"] and name not in result["undetermined"]:
-            said.append(f"{name}: {one['source']}.")
-    for pair in result["correlations"]:
-        if pair["strong"]:
-            first, second = pair["between"]
-            together = "together" if pair["r"] > 0.0 else "against each other"
-            said.append(
-                f"{first} and {second} are hard to distinguish (correlation {pair['r']:+.2f}): "
-                f"each is known within its interval, and their errors go {together}."
-            )
-    return said if result["motion"] else [*said, map_sentence(result["map"])]
-
-
-def _amount(one: dict[str, Any]) -> str:
-    """Value and unit."""
-    return number(one["value"], 5) + (f" {one['unit']}" if one["unit"] != "1" else "")
-
-
-def map_sentence(found: dict[str, Any]) -> str:
-    """Whether noise explains the residuals of the static map."""
-    share, ratio = number(100.0 * found["share_of_force"], 2), number(found["ratio_to_noise"], 2)
-    size = f"{number(found['residual_rms_n'])} N rms, {share} % of the force and {ratio} x the noise"
-    if found["explained_by_noise"]:
-        return f"The static map fits: residuals are {size}."
-    if found["fits"]:
-        return (
-            f"The static map fits roughly: residuals are {size}. The cause is friction that does not repeat, or an "
-            "effect that the machine file lacks; the intervals cover only the first; see: pneumo compare"
-        )
-    return (
-        f"The static map does NOT fit: residuals are {size}. These parameters cannot describe the friction of "
-        "this machine, and the intervals do not cover that; see: pneumo compare"
-    )
 
 
 def directions(result: dict[str, Any]) -> str:
@@ -108,8 +58,8 @@ def directions(result: dict[str, Any]) -> str:
     names = list(dict.fromkeys(n for side in sides.values() for n in (*side["parameters"], *side["undetermined"])))
     rows = [("per direction", *sides, "unit", "")]
     for name in names:
-        cells = ["{} ({})".format(*_interval(s["parameters"][name])) if name in s["parameters"] else "not determined"
-                 for s in sides.values()]  # fmt: skip
+        known = [side["parameters"].get(name) for side in sides.values()]
+        cells = ["{} ({})".format(*estimate_words(one)) if one else "not determined" for one in known]
         unit = next((s["parameters"][name]["unit"] for s in sides.values() if name in s["parameters"]), "")
         rows.append((name, *cells, unit, "DIFFER" if name in found["differ"] else ""))
     said = [f"{name.capitalize()}: {side['problem']}." for name, side in sides.items() if "problem" in side]

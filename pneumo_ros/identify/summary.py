@@ -49,13 +49,15 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
 def _fit_quality(found: Identification) -> dict[str, Any]:
     """Distance of the points from the fitted curve."""
     if not found.points:
-        return {"residual_rms_n": nan, "share_of_force": nan, "ratio_to_noise": nan, "explained_by_noise": True,
-                "fits": True}  # fmt: skip
+        nothing = dict.fromkeys(("residual_rms_n", "residual_before_rms_n", "share_of_force", "ratio_to_noise"), nan)
+        return nothing | {"explained_by_noise": True, "fits": True}
     rms = float(np.sqrt(np.mean(found.map_fit.residuals**2)))
+    at, force = (np.array([getattr(point, key) for point in found.points]) for key in ("velocity", "force"))
+    before = float(np.sqrt(np.mean((force - sliding_friction(found.before, at)) ** 2)))
     share = rms / float(np.median([abs(p.force) for p in found.points]))
     ratio = found.map_fit.ratio
     return {
-        "residual_rms_n": rms, "share_of_force": share, "ratio_to_noise": ratio,
+        "residual_rms_n": rms, "residual_before_rms_n": before, "share_of_force": share, "ratio_to_noise": ratio,
         "explained_by_noise": bool(ratio < MISFIT), "fits": bool(ratio < MISFIT or share < REPEATS),
     }  # fmt: skip
 

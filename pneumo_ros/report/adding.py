@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 def adding_report(found: "Adding", result: dict[str, Any], compared: dict[str, Any], origin: dict[str, Any]) -> Report:
     """The whole page; result: the JSON of the verb, compared: that of `found.after`, origin: as of `provenance`."""
     page = comparison_report(compared, found.after, found.model, origin)
-    first = _first_page(found, result)
     return replace(page, title=_title(found), verdict=result["headline"], good=found.errors[2] < found.errors[1],
-                   sections=(first, *page.sections))  # fmt: skip
+                   sections=(_first_page(found, result), *page.sections[1:]))  # fmt: skip
 
 
 def _title(found: "Adding") -> str:

@@ -6,6 +6,7 @@ from pneumo_ros.compare.findings import findings, verdict
 from pneumo_ros.compare.wording import TARGETS, amount
 from pneumo_ros.report.chart import HeatMap, Report, Section
 from pneumo_ros.report.equations import equations_section
+from pneumo_ros.report.failing import failing_section
 from pneumo_ros.report.friction import friction_section
 from pneumo_ros.report.machine import machine_section
 from pneumo_ros.report.markup import tag
@@ -19,14 +20,15 @@ if TYPE_CHECKING:
 
 
 def comparison_report(
-    result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]
+    result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any], then: str = ""
 ) -> Report:
-    """The whole page of `compare`; other verbs put their sections beside these."""
+    """The whole page of `compare`; then: the command line that follows, "" for none."""
     return Report(
         title=f"Model '{result['model']}' against {_count(result)}",
         verdict=verdict(result),
         good=all(one.level != "bad" for one in findings(result)),
         sections=(
+            failing_section(result, comparison, then),
             *comparison_sections(result, comparison),
             machine_section(model, result.get("refit")),
             origin_section(origin),

@@ -5,16 +5,18 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Report, Section
 from pneumo_ros.report.machine import machine_section
-from pneumo_ros.report.markup import Content, Html, table, tag
+from pneumo_ros.report.markup import Content, Html, table, tag, worded
 from pneumo_ros.report.origin import origin_section
-from pneumo_ros.report.static_map import static_map_section
+from pneumo_ros.report.static_map import before_after_chart, static_map_section
+from pneumo_ros.report.summary import what_next
+from pneumo_ros.wording.identification import found_table, next_sentence, sentences
 
 if TYPE_CHECKING:
     from pneumo_ros.plant import Model
 
 
-def identification_report(result: dict[str, Any], model: "Model", origin: dict[str, Any]) -> Report:
-    """The whole page of an identification; `model` is the identified one."""
+def identification_report(result: dict[str, Any], model: "Model", origin: dict[str, Any], then: str = "") -> Report:
+    """The whole page of an identification; model: the identified one, then: the command line that follows, or ""."""
     unknown = result["undetermined"]
     fits = result["map"]["fits"]
     verdict = "Everything asked for is determined." if not unknown else f"Not determined: {', '.join(unknown)}."
@@ -25,6 +27,7 @@ def identification_report(result: dict[str, Any], model: "Model", origin: dict[s
         verdict=verdict,
         good=fits and not unknown,
         sections=(
+            summary_section(result, then),
             found_section(result),
             *(() if result["motion"] else (static_map_section(result), windows_section(result))),
             machine_section(model, None),
@@ -32,6 +35,14 @@ def identification_report(result: dict[str, Any], model: "Model", origin: dict[s
         ),
         result=result,
     )
+
+
+def summary_section(result: dict[str, Any], then: str) -> Section:
+    """The first page: what was found and how sure, what the recordings do not determine, before and after."""
+    table = worded(found_table(result), "Identified from these recordings")
+    said = tag("ul", [tag("li", one) for one in sentences(result)], class_="notes")
+    charts = () if result["motion"] else (before_after_chart(result),)
+    return Section("summary", "On one page", Html(table + said + what_next(next_sentence(result), then)), charts=charts)
 
 
 def found_section(result: dict[str, Any]) -> Section:

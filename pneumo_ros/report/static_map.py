@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Chart, Panel, Section, Trace
 from pneumo_ros.report.markup import tag
+from pneumo_ros.wording.identification import before_and_after
 
 Array = NDArray[np.float64]
 
@@ -23,27 +24,42 @@ def static_map_section(result: dict[str, Any]) -> Section:
 
 
 def _chart(result: dict[str, Any]) -> Chart:
-    points, curve, breaks = result["map"]["points"], result["map"]["curve"], result["breakaways"]
-    velocity, force, residual, spread = (
-        np.array(points[key], dtype=float) for key in ("velocity", "force", "residual", "residual_std")
-    )
-    at, model, before = (np.array(curve[key], dtype=float) for key in ("velocity", "friction", "before"))
+    velocity, residual, spread = _arrays(result["map"]["points"], "velocity", "residual", "residual_std")
     order = np.argsort(velocity)
-    top = [
+    below = (
+        Trace("noise, 95 %", "quiet", "band", velocity[order], -1.96 * spread[order], 1.96 * spread[order]),
+        Trace("measured - identified", "measured", "dots", velocity, residual),
+    )
+    panels = (_friction_panel(result), Panel("residual [N]", below))
+    said = (
+        f"{len(velocity)} windows at {number(np.abs(velocity).min())} to {number(np.abs(velocity).max())} m/s; "
+        f"residuals {number(result['map']['residual_rms_n'])} N rms."
+    )
+    return Chart("static-map", "Friction over velocity", said, "velocity [m/s]", panels, height=560)
+
+
+def before_after_chart(result: dict[str, Any]) -> Chart:
+    """Friction alone, as low as the first page has room for: measured, before and identified."""
+    words = before_and_after(result["map"])
+    panels = (_friction_panel(result),)
+    return Chart("before-after", "Friction before and after", words, "velocity [m/s]", panels, height=280)
+
+
+def _friction_panel(result: dict[str, Any]) -> Panel:
+    """Points, the curves of the machine file before and of the identified model, and breakaways."""
+    breaks = result["breakaways"]
+    at, model, before = _arrays(result["map"]["curve"], "velocity", "friction", "before")
+    velocity, force = _arrays(result["map"]["points"], "velocity", "force")
+    traces = [
         Trace("before", "noise", "line", at, before),
         Trace("identified", "model", "line", at, model),
         Trace("measured", "measured", "dots", velocity, force),
     ]
     if breaks:
         level = np.array([b["direction"] * b["force_n"] for b in breaks])
-        top.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level))
-    below = (
-        Trace("noise, 95 %", "quiet", "band", velocity[order], -1.96 * spread[order], 1.96 * spread[order]),
-        Trace("measured - identified", "measured", "dots", velocity, residual),
-    )
-    panels = (Panel("friction force [N]", tuple(top), share=2.0), Panel("residual [N]", below))
-    said = (
-        f"{len(velocity)} windows at {number(np.abs(velocity).min())} to {number(np.abs(velocity).max())} m/s; "
-        f"residuals {number(result['map']['residual_rms_n'])} N rms."
-    )
-    return Chart("static-map", "Friction over velocity", said, "velocity [m/s]", panels, height=560)
+        traces.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level))
+    return Panel("friction force [N]", tuple(traces), share=2.0)
+
+
+def _arrays(found: dict[str, Any], *keys: str) -> list[Array]:
+    return [np.array(found[key], dtype=float) for key in keys]

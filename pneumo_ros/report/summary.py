@@ -1,6 +1,6 @@
 """The first page: effect, size, how sure, what to do at the machine, and measured, before and after over time."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +16,8 @@ from pneumo_ros.wording.diagnosis import DiagnosisWords
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison, RunComparison
     from pneumo_ros.diagnose.outcome import Outcome
+
+    Shown = tuple[str, Role, Comparison]  # a model's name in the plot, its colour, and its predictions
 
 Array = NDArray[np.float64]
 SHOWN = 10.0  # s around the worst error: more would hide it in the width of a page
@@ -41,6 +43,12 @@ def summary_section(said: DiagnosisWords, outcome: "Outcome") -> Section:
     return Section("summary", "On one page", summary_text(said), charts=(chart,) if chart else ())
 
 
+def what_next(words: str, then: str) -> Html:
+    """What to do with the result, and the command line that does it, "" for none."""
+    command = tag("pre", tag("code", then)) if then else Html()
+    return Html(tag("p", tag("strong", "What to do next: "), words) + command)
+
+
 def before_after_chart(
     refitted: "Comparison", final: "Comparison", added: Sequence[str], fitted: bool = False
 ) -> Chart | None:
@@ -48,24 +56,34 @@ def before_after_chart(
 
     `fitted`: whether the runs of both comparisons were fitted.
     """
-    found = worst(refitted)
+    shown: tuple[Shown, ...] = (("refitted, nothing added", "second", refitted),)
+    if added:
+        shown += ((f"with {', '.join(added)}", "first", final),)
+    return over_time_chart(shown, [one.name for one in refitted.runs] if fitted else [])
+
+
+def over_time_chart(shown: "Sequence[Shown]", fitted: Collection[str] | None, height: int = 400) -> Chart | None:
+    """Measured, and predicted by each comparison, of the signal that the first one predicts worst; None without one.
+
+    Shown: name, role and comparison of each model; fitted: names of the runs that were fitted, None says nothing of it;
+    height: in pixels.
+    """
+    found = worst(shown[0][2])
     if found is None:
         return None
     k, name = found
-    before, after = refitted.runs[k], final.runs[k]
-    shown: tuple[tuple[str, Role, RunComparison], ...] = (("refitted, nothing added", "second", before),)
-    if added:
-        shown += ((f"with {', '.join(added)}", "first", after),)
+    before, runs = shown[0][2].runs[k], tuple((text, role, one.runs[k]) for text, role, one in shown)
     words, unit, _ = SIGNALS[name]
     span = _span(before, name)
-    panels = (Panel(f"{words} [{unit}]", _curves(before, name, shown, span), share=1.4),
-              Panel(f"error [{unit}]", _errors(before, name, shown, span)))  # fmt: skip
-    which = "measured, before and after" if added else "measured and predicted"
-    title = f"{words.capitalize()} of '{before.name}', which was {'' if fitted else 'not '}fitted: {which}"
+    panels = (Panel(f"{words} [{unit}]", _curves(before, name, runs, span), share=1.4),
+              Panel(f"error [{unit}]", _errors(before, name, runs, span)))  # fmt: skip
+    which = "measured, before and after" if len(shown) > 1 else "measured and predicted"
+    judged = "" if fitted is None else f", which was {'' if before.name in fitted else 'not '}fitted"
+    title = f"{words.capitalize()} of '{before.name}'{judged}: {which}"
     said = [f"{text} {amount(run.error[name].rms, name)} rms, {times(run.error[name].ratio)} the noise"
-            for text, _, run in shown]  # fmt: skip
-    told = f"Error over {final.horizon:g} s: {'; '.join(said)}."
-    return Chart("before-after", title, told, "time [s]", panels, link="before-after", span=span, height=400)
+            for text, _, run in runs]  # fmt: skip
+    told = f"Error over {shown[-1][2].horizon:g} s: {'; '.join(said)}."
+    return Chart("before-after", title, told, "time [s]", panels, link="before-after", span=span, height=height)
 
 
 def worst(comparison: "Comparison") -> tuple[int, str] | None:

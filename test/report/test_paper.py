@@ -1,20 +1,52 @@
-"""A diagnosis on paper: one page first, every plot drawn, no column cut; and without scripts."""
+"""Reports on paper: one page first, every plot drawn, no column cut; and without scripts."""
 
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from report.browser import Visit
 from report.diagnoses import diagnosed, diagnosis_of
+from report.pages import compared, result_of
 
+import pneumo_ros as pn
+from pneumo_ros.command.console import plain
+from pneumo_ros.compare.findings import headline
 from pneumo_ros.compare.wording import times
+from pneumo_ros.report.chart import Report
+from pneumo_ros.report.comparison import comparison_report
+from pneumo_ros.report.identification import identification_report
 from pneumo_ros.report.page import page_html
+from pneumo_ros.report.provenance import provenance
 
 SHEET = 700  # px: A4 without its margins
 FOUND = "effects_found"
 HIGH = "all => all.map(one => one.getBoundingClientRect().height)"
 CUT = """() => [...document.querySelectorAll("main *")].filter((one) => one.checkVisibility()
   && one.getBoundingClientRect().right > innerWidth + 1).map((one) => one.outerHTML.slice(0, 100))"""
+
+
+NOISE = {"position": 5e-6, "pressure_a": 200.0, "pressure_b": 200.0}  # m, Pa
+FIRST = "pneumo tune --out gains.yaml"  # any command line
+
+
+def comparison_page() -> Report:
+    """A comparison whose friction fails."""
+    model, comparison = compared()
+    return comparison_report(result_of(comparison), comparison, model, provenance([], "axis", ["compare"]), FIRST)
+
+
+def identification_page() -> Report:
+    """An identification of too few runs, with Coulomb friction that was 10 N too low before."""
+    model = pn.load_model("axis")
+    runs = [
+        pn.simulate(
+            model, f"step:{volts}@0.5", seconds=3, position=-0.3 * np.sign(volts), noise=NOISE, seed=k, name=f"run_{k}"
+        )
+        for k, volts in enumerate((1.2, -1.2, 2.0, -2.0))
+    ]
+    found = pn.identify(runs, model.with_parameters({"lugre_friction.coulomb_friction": 60.0}))
+    return identification_report(plain(found.as_dict()), found.model, provenance([], "axis", ["identify"]), FIRST)
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +110,40 @@ def test_without_scripts_the_drawings_are_shown(browser: Any, page: Path) -> Non
     assert opened.locator("#summary .still").is_visible()
     assert not opened.locator("#summary .plot").is_visible()
     context.close()
+
+
+@pytest.mark.parametrize("make", [comparison_page, identification_page], ids=["compare", "identify"])
+def test_other_verbs_begin_with_one_sheet_and_what_to_do_next(browser: Any, tmp_path: Path, make: Any) -> None:
+    report = make()
+    (tmp_path / "page.html").write_text(page_html(report), encoding="utf-8")
+    opened = Visit(browser, (tmp_path / "page.html").as_uri(), SHEET)
+    opened.page.emulate_media(media="print")
+    first = opened.page.locator("#summary")
+    box, words = first.bounding_box(), first.inner_text()
+    assert box["y"] + box["height"] < SHEET * 297 / 210
+    assert first.evaluate("one => getComputedStyle(one).breakAfter") == "page"
+    assert first.locator("svg.still").bounding_box()["height"] > 80
+    assert FIRST in words
+    assert opened.page.evaluate(CUT) == []
+    opened.close()
+
+
+def test_the_first_page_of_a_comparison_has_the_number_and_what_fails() -> None:
+    text = page_html(comparison_page())
+    verdict, first = text.split('id="summary"')[0], text.split('id="summary"')[1].split("</section>")[0]
+    assert headline(result_of(compared()[1])).removeprefix("; ") in verdict
+    assert "fails: " in first
+    assert "measured and predicted" in first
+
+
+def test_the_first_page_of_an_identification_has_before_and_after_and_what_is_not_known() -> None:
+    report = identification_page()
+    first = report.sections[0]
+    (chart,) = first.charts
+    assert "N rms off the machine file" in chart.words
+    quality = report.result["map"]
+    assert isinstance(quality, dict)
+    assert 8.0 < quality["residual_before_rms_n"] < 12.0  # N
+    assert quality["residual_rms_n"] < 0.1
+    assert "lugre_friction.bristle_damping: not measured" in first.body
+    assert '<td class="number">60</td>' in first.body

@@ -78,8 +78,9 @@ def test_the_reader_brings_in_the_free_run_and_it_stays(visit: Visit) -> None:
     assert visit.traces(POSITION)[2]["visible"] is True
 
 
-def test_the_heat_map_comes_first_and_leads_to_the_run(visit: Visit) -> None:
-    assert visit.page.locator("main > section").first.get_attribute("id") == "overview"
+def test_the_heat_map_follows_the_first_page_and_leads_to_the_run(visit: Visit) -> None:
+    sections = visit.page.locator("main > section")
+    assert [sections.nth(k).get_attribute("id") for k in (0, 1)] == ["summary", "overview"]
     cells = visit.page.locator("#overview table.heat tbody td a")
     assert cells.count() == 2 * 6
     cells.nth(6).click()

@@ -72,10 +72,10 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.say(text(result))
     save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
     console.note(f"Machine file written to {options.out}")
-    judged = shlex.join((options.holdout or options.bags)[:2])
-    console.next(f"compare {judged}{again(options, options.out)}")
     console.json(result)
     report.publish(console, lambda origin: _report(found, result, origin))
+    judged = shlex.join((options.holdout or options.bags)[:2])
+    console.next(f"compare {judged}{again(options, options.out)}")
     return 1 if undetermined(result) else 0
 
 

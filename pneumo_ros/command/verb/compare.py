@@ -74,22 +74,28 @@ def run(options: argparse.Namespace, console: Console) -> int:
     console.json(result)
     if options.series:
         _write_series(comparison, options.series)
-    report.publish(console, lambda origin: _report(result, comparison, model, origin))
-    console.next(_next(options, model, comparison))
+    then = _next(options, model, result)
+    report.publish(console, lambda origin: _report(result, comparison, model, origin, f"pneumo {then}"))
+    console.next(then)
     return 0
 
 
-def _next(options: argparse.Namespace, model: "Model", comparison: "Comparison") -> str:
-    """Look for what is missing where an equation fails; else use the model."""
+def _next(options: argparse.Namespace, model: "Model", result: dict[str, Any]) -> str:
+    """Look for what is missing where an equation fails, refit where predictions drift; else use the model."""
+    from pneumo_ros.wording.comparing import next_step
+
     machine = options.out or options.model
     own = "".join(f" --effects {shlex.quote(path)}" for path in options.effects)
     named = ("" if machine == "axis" else f" --model {shlex.quote(machine)}") + own
     how = again(options, options.out)
-    fails = any(one.explained_by_noise is False for one in comparison.equations.values())
-    if fails and len(options.bags) > 1:
-        fitted, held = parted(options.bags)
+    step, several = next_step(result), len(options.bags) > 1
+    fitted, held = parted(options.bags) if several else (options.bags, options.bags)
+    if step == "refit":
+        judged = f"{shlex.join(held)} --fit {shlex.join(fitted)}" if several else f"{shlex.join(fitted)} --refit"
+        return f"compare {judged}{how} --out refitted.yaml"
+    if step == "diagnose" and several:
         return f"diagnose {shlex.join(fitted)} --holdout {shlex.join(held)}{how}"
-    if fails:
+    if step == "diagnose":
         return f"diagnose OTHER_BAG... --holdout {shlex.quote(options.bags[0])}{how}"
     return f"tune{named} --out my_cascade.yaml" if len(model.chambers) > 1 else f"effects{named}"
 
@@ -104,10 +110,12 @@ def _write_series(comparison: "Comparison", path: str) -> None:
     write_whole(path, packed.getvalue())
 
 
-def _report(result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any]) -> "Report":
+def _report(
+    result: dict[str, Any], comparison: "Comparison", model: "Model", origin: dict[str, Any], then: str
+) -> "Report":
     from pneumo_ros.report.comparison import comparison_report
 
-    return comparison_report(result, comparison, model, origin)
+    return comparison_report(result, comparison, model, origin, then)
 
 
 def _print(console: Console, model: "Model", comparison: "Comparison", result: dict[str, Any]) -> None:

@@ -93,15 +93,20 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if options.out:
         save_model(whole(given, outcome.model), options.out, overwrite=options.overwrite)
         console.note(f"{_what(outcome)} written to {options.out}")
-        console.next(f"compare {shlex.join(options.holdout[:2])}{again(options, options.out)}")
-    else:
-        named = [*options.bags, "--holdout", *options.holdout]
-        console.next(f"diagnose {shlex.join(named)}{again(options)} --out better.yaml   # the machine file")
     console.json(result)
     report.publish(console, lambda origin: _report(outcome, result, origin))
+    console.next(_next(options))
     if outcome.interrupted:
         return INTERRUPTED
     return 1 if outcome.verdict == "unknown_effect" else 0
+
+
+def _next(options: argparse.Namespace) -> str:
+    """See how the machine that was found predicts; without a machine file, write it."""
+    if options.out:
+        return f"compare {shlex.join(options.holdout[:2])}{again(options, options.out)}"
+    named = [*options.bags, "--holdout", *options.holdout]
+    return f"diagnose {shlex.join(named)}{again(options)} --out better.yaml   # the machine file"
 
 
 def seconds(text: str) -> float:

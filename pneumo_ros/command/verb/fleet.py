@@ -67,9 +67,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
         | {"provenance": report.origin()}
     )
     console.say(text(result))
-    console.next(f"fleet {shlex.quote(str(options.folder))} --report fleet.html   # every machine over time")
     console.json(result)
     report.publish(console, lambda origin: fleet_report(result, origin))
+    console.next(f"fleet {shlex.quote(str(options.folder))} --report fleet.html   # every machine over time")
     return int(any(one["problem"] for one in examined))
 
 

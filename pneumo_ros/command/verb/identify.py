@@ -76,9 +76,10 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if options.out:
         save_model(whole(given, found.model), options.out, overwrite=options.overwrite)
         console.note(f"Machine file written to {options.out}")
-    console.next(_next(options))
+    then = _next(options)
     console.json(result)
-    report.publish(console, lambda origin: identification_report(result, found.model, origin))
+    report.publish(console, lambda origin: identification_report(result, found.model, origin, f"pneumo {then}"))
+    console.next(then)
     return 1 if found.undetermined else 0
 
 
