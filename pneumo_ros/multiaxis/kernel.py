@@ -2,7 +2,8 @@
 
 The supply drops by d, tau d' = R q - d, with the mass flow q that all axes draw (Beater 2007). An axis sees d as it was
 at the begin of its step of length h, and d moves by the exact solution for the mean flow of that step: an error of
-h / (2 tau) of the drop, 1 % at tau = 5 ms and h = 0.1 ms.
+h / (2 tau) of the drop, 1 % at tau = 5 ms and h = 0.1 ms. Each axis has a time of its own, which began at `begun` [s]:
+an axis of a simulator is reset alone.
 """
 
 from collections.abc import Sequence
@@ -35,7 +36,7 @@ def machine_text(axes: Sequence[Composition], modules: Sequence[str]) -> str:
 def _run_text(axes: Sequence[Composition]) -> str:
     states = [f"a{i}_{s}" for i, one in enumerate(axes) for s in one.states] + [SUPPLY_STATE]
     names = [f"a{i}_{_plain(p)}" for i, one in enumerate(axes) for p in one.parameters]
-    names += list(SUPPLY_PARAMETERS)
+    names += [*SUPPLY_PARAMETERS, *(f"a{i}_begun" for i in range(len(axes)))]
     held = [f"a{i}_{name}" for i, one in enumerate(axes) for name in one.inputs if name != MEASURED]
     lines = [*(f"{n} = q[{i}]" for i, n in enumerate(names)), *(f"{s} = x[{i}]" for i, s in enumerate(states))]
     lines += ["decay = math.exp(-h / time_constant)", "for k in range(out.shape[0]):", "    for j in range(parts):"]
@@ -59,7 +60,7 @@ def _step(i: int, one: Composition) -> str:
     states = [f"a{i}_{s}" for s in one.states]
     supply = f"a{i}_air__supply_pressure - {SUPPLY_STATE}"
     inputs = [supply if name == MEASURED else f"a{i}_{name}" for name in one.inputs]
-    arguments = [*states, *inputs, "t", "h", *(f"a{i}_{_plain(p)}" for p in one.parameters)]
+    arguments = [*states, *inputs, f"t - a{i}_begun", "h", *(f"a{i}_{_plain(p)}" for p in one.parameters)]
     return f"{', '.join(states)}, = step_{i}({', '.join(arguments)})"
 
 

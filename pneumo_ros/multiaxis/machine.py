@@ -83,9 +83,9 @@ class Machine:
 
     @property
     def values(self) -> Array:
-        """Parameter vector in kernel order; a fresh copy."""
+        """Parameter vector in kernel order, all axes begun at 0 s; a fresh copy."""
         line = STIFF if self.supply is None else tuple(self.supply[name] for name in SUPPLY_PARAMETERS)
-        return np.concatenate([*(one.values for one in self.axes.values()), line])
+        return np.concatenate([*(one.values for one in self.axes.values()), line, np.zeros(len(self.axes))])
 
     def state(self, axes: Mapping[str, ArrayLike] | None = None) -> Array:
         """State vector (states,): each axis as given (states of its model,), others at rest; a full supply."""

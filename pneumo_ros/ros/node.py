@@ -13,7 +13,9 @@ def main() -> int:
     return run(lambda: [Recorder()], "recorder")
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
@@ -30,16 +32,37 @@ from pneumo_ros.ros.parameters import Parameters
 from pneumo_ros.ros.rivals import Rivals
 
 
+@dataclass(frozen=True)
+class Place:
+    """A node that another one makes: its namespace, its parameters, and the remappings of the command line."""
+
+    namespace: str
+    given: Mapping[str, Any]
+    remaps: tuple[str, ...] = ()
+
+    def arguments(self) -> dict[str, Any]:
+        """Arguments of rclpy's node that put it there, whatever the process was given."""
+        rules = [word for rule in self.remaps for word in ("-r", rule)]
+        return {
+            "namespace": self.namespace, "use_global_arguments": False,
+            "cli_args": ["--ros-args", *rules] if rules else [],
+            "parameter_overrides": [Parameter(name, value=value) for name, value in self.given.items()],
+        }  # fmt: skip
+
+
 class AxisNode(Node):
     """Base of the nodes: `parameters`, 1 Hz `/diagnostics` from `health`, `start` and `finish` for subclasses."""
 
-    def __init__(self, name: str, settings: Iterable[Setting], simulated_time: bool | None = None) -> None:
-        """Declare `settings`; `simulated_time`, unless None, overrides use_sim_time.
+    def __init__(
+        self, name: str, settings: Iterable[Setting], simulated_time: bool | None = None, place: Place | None = None
+    ) -> None:
+        """Declare `settings`; `simulated_time`, unless None, overrides use_sim_time; `place` replaces the command line.
 
         Raises UsageError for a given value of wrong type or out of range.
         """
+        where = place.arguments() if place else {}
         try:
-            super().__init__(name, automatically_declare_parameters_from_overrides=True)
+            super().__init__(name, automatically_declare_parameters_from_overrides=True, **where)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             raise UsageError(str(error)) from error
         if simulated_time is not None:
@@ -48,6 +71,7 @@ class AxisNode(Node):
         self.end: Callable[[], None] = lambda: None  # asks for the end of the process; set by `run`
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self.parameters = Parameters(self)
+        self.parameters.choose(self.chosen)
         self.parameters.declare(settings)
         self.rivals: Rivals | None = None  # of a node whose role only one node in a namespace can have
         self.diagnostics = Diagnostics(self, self._whole_health)
@@ -64,6 +88,10 @@ class AxisNode(Node):
             return SetParametersResult(successful=not wrong, reason=why if wrong else "")
 
         self.add_on_set_parameters_callback(check)
+
+    def chosen(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The parameters that this node takes of those that were `given`."""
+        return given
 
     def health(self) -> Health:
         """What /diagnostics says about this node."""

@@ -44,6 +44,11 @@ class Parameters:
         node.add_on_set_parameters_callback(self._validate)
         node.add_post_set_parameters_callback(self._take)
 
+    def choose(self, chosen: Callable[[Values], Values]) -> None:
+        """Go on with what `chosen` makes of the parameters from files and command line."""
+        self.given = dict(chosen(self.given))
+        self.begun_with = dict(self.given)
+
     def declare(self, settings: Iterable[Setting]) -> None:
         """Declare `settings` with what was given for them, else their defaults.
 
@@ -70,7 +75,9 @@ class Parameters:
         """Raise UsageError, with the nearest names, if an undeclared parameter was given."""
         for name in self.given:
             if not tolerated(name):
-                raise UsageError(unknown_name("parameter", name, self._settings))
+                model = {"axes", "effects"} & {*self.given} and "model" in self._settings
+                hint = "; this node takes a machine file as -p model:=my.yaml" if model else ""
+                raise UsageError(unknown_name("parameter", name, self._settings) + hint)
 
     def __getitem__(self, name: str) -> Any:
         return self._node.get_parameter(name).value

@@ -1,23 +1,28 @@
 """The recorder node: topics as bytes into a rosbag2 folder that is valid at any time."""
 
+import json
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from rclpy.qos import ReliabilityPolicy
+from std_msgs.msg import String
 
 from pneumo_ros.axis.health import Health
 from pneumo_ros.axis.priority import PRIORITY, take_priority
 from pneumo_ros.axis.setting import Setting
-from pneumo_ros.errors import PneumoError
+from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.plant.axes_section import AXES, axis_names
 from pneumo_ros.records import BagTopic, BagWriter
-from pneumo_ros.records.contract import TYPES
+from pneumo_ros.records.contract import DESCRIPTION, TYPES
 from pneumo_ros.ros.arguments import parse
 from pneumo_ros.ros.intake import Intake, Taken, latches
 from pneumo_ros.ros.message_classes import definition
 from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.qos import LATCHED
 from pneumo_ros.ros.run import run
 from pneumo_ros.ros.selection import Selection
 
@@ -30,6 +35,10 @@ SETTINGS = (
         "topics", [*TYPES, "/diagnostics"],
         "topics to record, of the node's namespace unless they start with /; * and ? match any letters", live=False,
     ),
+    Setting(
+        "axes", [""], "axes in namespaces below the node's, recorded as well; none: those that a description lists",
+        live=False,
+    ),
     PRIORITY,
 )  # fmt: skip
 
@@ -41,6 +50,7 @@ class Recorder(AxisNode):
         super().__init__("recorder", SETTINGS)
         self.parameters.refuse_unknown()
         self._selection = Selection(self, self.parameters["topics"])
+        self._selection.extend(self._of_axes(axis for axis in self.parameters["axes"] if axis))
         output = self.parameters["output"] or time.strftime("recording_%Y_%m_%d-%H_%M_%S")
         self._writer = BagWriter(Path(output).expanduser())
         self._lock = threading.Lock()  # the end comes from another thread than the callbacks
@@ -51,9 +61,31 @@ class Recorder(AxisNode):
         self._intake = Intake(self)
         for topic, (kind, latched) in self._selection.known.items():
             self._intake.subscribe(topic, kind, latched)
+        self.create_subscription(String, DESCRIPTION, self._describes, LATCHED)
         self.create_timer(TAKE, self._take, clock=self.steady_clock)
         self.create_timer(DISCOVER, self._discover, clock=self.steady_clock)
         self.get_logger().info(f"recording to {self._writer.path}")
+
+    def chosen(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Of a machine file of several axes, their names."""
+        names = {setting.name for setting in SETTINGS}
+        return {name: value for name, value in given.items() if AXES not in given or "." not in name or name in names}
+
+    def _of_axes(self, axes: Iterable[str]) -> list[str]:
+        """The selected topics of the node's namespace, of each axis below it."""
+        return [f"{axis}/{topic}" for axis in axes for topic in self.parameters["topics"] if topic[0] != "/"]
+
+    def _describes(self, message: String) -> None:
+        """Record the axes that the description of a machine lists, too."""
+        try:
+            axes = list(axis_names(json.loads(message.data)["model"]))
+            found = self._selection.extend(self._of_axes(axes))
+        except (ValueError, TypeError, KeyError, AttributeError, UsageError):  # anybody may publish anything
+            return
+        if found:
+            self.get_logger().info(f"recording the axes {', '.join(axes)}, too")
+        for topic, (kind, latched) in found.items():
+            self._intake.subscribe(topic, kind, latched)
 
     def start(self) -> None:
         """Ask for real-time scheduling: otherwise nodes that have it make the middleware's queues overflow."""

@@ -21,8 +21,17 @@ class Selection:
         """Raises UsageError for an invalid name."""
         self._node = node
         self._refused: set[str] = set()
-        self._patterns = [resolve(node, name) for name in names]
-        self.known = {topic: found for topic in self._patterns if (found := _by_contract(topic))}
+        self._patterns: list[str] = []
+        self.known: dict[str, tuple[str, bool]] = {}
+        self.extend(names)
+
+    def extend(self, names: Iterable[str]) -> dict[str, tuple[str, bool]]:
+        """Select more topics; returns those of them in the contract, as `known` has them. UsageError as above."""
+        fresh = [one for one in (resolve(self._node, name) for name in names) if one not in self._patterns]
+        found = {topic: kind for topic in fresh if (kind := _by_contract(topic))}
+        self._patterns += fresh
+        self.known |= found
+        return found
 
     def appeared(self, present: Mapping[str, str]) -> Iterator[tuple[str, str, bool]]:
         """Selected topics that are published, but not `present` with that type: name, type, whether it is latched."""

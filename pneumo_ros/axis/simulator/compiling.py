@@ -6,33 +6,52 @@ import sys
 import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from pneumo_ros.axis.simulator.force_input import pushed
-from pneumo_ros.plant import Model
+from pneumo_ros.multiaxis import Machine
+from pneumo_ros.multiaxis.machine_file import machine_from_dict
+from pneumo_ros.plant import Library, Model, model_from_dict
+from pneumo_ros.plant.axes_section import AXES
 
 # Numba blocks the interpreter for seconds, so another process compiles into the kernel cache; loading from it takes
 # milliseconds. One sample and its outputs use every function of the kernel that a simulation uses.
 _PROGRAM = """
 import json, sys
-import numpy as np
-from pneumo_ros.plant import Library, model_from_dict
-given = json.load(sys.stdin)
-model = model_from_dict(given["model"], "model", Library(given["files"]))
-rest = np.zeros((1, len(model.inputs)))
-model.outputs(model.simulate(rest, model.state()), rest)
+from pneumo_ros.axis.simulator.compiling import compile_dict
+compile_dict(**json.load(sys.stdin))
 """
+
+
+def compile_dict(model: dict[str, Any], files: list[str]) -> None:
+    """Compile, or load, what steps the machine of this nested dictionary, of one axis or several."""
+    library = Library(files)
+    use(machine_from_dict(model, "model", library) if AXES in model else model_from_dict(model, "model", library))
+
+
+def use(machine: Model | Machine) -> None:
+    """Step a machine once and read its sensors: afterwards its kernel is there."""
+    axes = [machine] if isinstance(machine, Model) else list(machine.axes.values())
+    for model in axes:
+        rest = np.zeros((1, len(model.inputs)))
+        model.outputs(model.simulate(rest, model.state()), rest)
+    if isinstance(machine, Machine):
+        machine.simulate(np.zeros((1, len(machine.inputs))), machine.state())
 
 
 class Compiler:
     """Compiles models one after the other in a thread and a process of its own; only the last one asked for counts."""
 
-    def __init__(self, files: Iterable[str | Path], done: Callable[[Model, Exception | None], None]) -> None:
+    def __init__(
+        self, files: Iterable[str | Path], done: Callable[[Model, Exception | None], None],
+        whole: Callable[[Model], Model | Machine] = lambda model: model,
+    ) -> None:  # fmt: skip
         """`files` are the user's effect files; `done` is called in the thread with a model whose kernel is ready,
-        or with the reason why there is none.
+        or with the reason why there is none. `whole`: the machine of several axes with such a model of one of them.
         """
-        self._files, self._done = [str(path) for path in files], done
+        self._files, self._done, self._whole = [str(path) for path in files], done, whole
         self._wanted: Model | None = None
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
@@ -62,13 +81,12 @@ class Compiler:
                 self._done(model, failure)
 
     def _compile(self, model: Model) -> Exception | None:
-        model = pushed(model)  # as a simulation steps it
-        given = json.dumps({"model": model.as_dict(), "files": self._files})
+        machine = self._whole(pushed(model))  # as a simulation steps it
+        given = json.dumps({"model": machine.as_dict(), "files": self._files})
         # a failure there happens again, and is reported, when the kernel is loaded here
         subprocess.run([sys.executable, "-c", _PROGRAM], input=given, text=True, capture_output=True, check=False)
         try:
-            rest = np.zeros((1, len(model.inputs)))
-            model.outputs(model.simulate(rest, model.state()), rest)
+            use(machine)
         except Exception as failure:  # numba's, about a user's effect: it can be of any class
             return failure
         return None

@@ -4,10 +4,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from pneumo_ros.axis.sections import Given, nested
 from pneumo_ros.axis.simulator.force_input import LOAD
 from pneumo_ros.axis.simulator.settings import EFFECTS
 from pneumo_ros.errors import UsageError
+from pneumo_ros.multiaxis import Machine, load_machine
+from pneumo_ros.multiaxis.machine_file import machine_from_dict
+from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Library, Model, load_model, model_from_dict
+from pneumo_ros.plant.axes_section import AXES, SUPPLY
 from pneumo_ros.plant.closed import SECOND
 
 TOPICS = (SECOND, LOAD)  # inputs that the simulator gets as topics, beside the voltage
@@ -22,12 +27,47 @@ def machine_from_parameters(base: str, given: Mapping[str, Any], effects_files: 
     values, files = dict(given), tuple(effects_files)
     sections = {name.partition(".")[0] for name in values}
     if {EFFECTS, "piston", "air"} <= sections and sections.intersection(Library(files).actuators()):
-        return _simulable(model_from_dict(_nested(values), "parameters", Library(files)))
-    model = load_model(base, files)
-    effects = values.pop(EFFECTS, None)
+        return _simulable(model_from_dict(nested(values), "parameters", Library(files)))
+    return _with(load_model(base, files), values)
+
+
+def machine_of_axes(base: str, given: Given, effects_files: Iterable[str | Path] = ()) -> Machine:
+    """The machine of several axes that the `given` parameters describe: a whole one, or changes of the file `base`.
+
+    Raises UsageError as `machine_from_parameters`, with the axis named.
+    """
+    if AXES in given:
+        machine = machine_from_dict(nested(given), "parameters", Library(effects_files))
+    else:
+        machine = _changed(load_machine(base, effects_files), given)
+    return machine.with_axes({axis: _simulable(one) for axis, one in machine.axes.items()})
+
+
+def _changed(machine: Machine, given: Given) -> Machine:
+    """`machine` with the parameters whose names begin with an axis, or with the supply that all share."""
+    line, axes = dict(machine.supply or {}), {*machine.axes}
+    changes: dict[str, dict[str, Any]] = {axis: {} for axis in axes}
+    for name, value in given.items():
+        section, _, key = name.partition(".")
+        if section == SUPPLY and key in line:
+            line[key] = float(value)
+        elif section in axes:
+            changes[section][key] = value
+        else:
+            raise UsageError(
+                unknown_name("parameter", name, [f"{axis}.{n}" for axis in axes for n in machine.axes[axis].parameters])
+            )
+    found = {axis: _with(model, changes[axis]) for axis, model in machine.axes.items() if changes[axis]}
+    return machine.with_axes(found).with_supply(line or None)
+
+
+def _with(model: Model, values: Mapping[str, Any]) -> Model:
+    """`model` with the effects and the parameters in `values`."""
+    rest = dict(values)
+    effects = rest.pop(EFFECTS, None)
     if effects is not None:
-        model = model.with_effects(effects)
-    return _simulable(model.with_parameters(values) if values else model)
+        model = model.with_effects(list(effects))
+    return _simulable(model.with_parameters(rest) if rest else model)
 
 
 def changed(model: Model, values: Mapping[str, Any]) -> Model:
@@ -76,14 +116,3 @@ def _simulable(model: Model) -> Model:
             "without them"
         )
     return model
-
-
-def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    nested: dict[str, Any] = {}
-    for name, value in values.items():
-        section, dot, key = name.partition(".")
-        if dot:
-            nested.setdefault(section, {})[key] = value
-        else:
-            nested[section] = list(value) if section == EFFECTS else value
-    return nested

@@ -47,6 +47,11 @@ LIVE = (
 )  # fmt: skip
 
 
+OF_ONE_AXIS = frozenset({"joint_name", "wired_as", *(setting.name for setting in LIVE)})
+"""Parameters that each of several axes may have of its own, behind its name: lift.noise_position."""
+OF_ALL_AXES = tuple(setting for setting in FIXED if setting.name not in OF_ONE_AXIS)
+
+
 def machine_settings(model: Model, names: list[str]) -> list[Setting]:
     """Settings of the machine's parameters of the given dotted names; the present values are the defaults."""
     return [_setting(name, model[name], model.specification(name)) for name in names]

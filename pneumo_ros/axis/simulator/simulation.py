@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.axis.simulator.force_input import GAIN, LOAD, ForceInput, pushed
 from pneumo_ros.axis.simulator.sensors import Reading, Sensors
+from pneumo_ros.axis.simulator.shared_plant import AxisPlant
 from pneumo_ros.axis.simulator.valve_input import ValveInput
 from pneumo_ros.plant import Model, Stepper
 from pneumo_ros.plant.actuator import SIDES
@@ -21,12 +22,18 @@ ATMOSPHERE = "air.atmospheric_pressure"
 class Simulation:
     """A stepper between valve commands and sensor readings; model and parameters may change between two samples."""
 
-    def __init__(self, model: Model, valve: ValveInput, sensors: Sensors, *, rate: float, step: float) -> None:
-        """Sample at `rate` [Hz], integrate in steps no longer than `step` [s]. The kernel is compiled here."""
+    def __init__(
+        self, model: Model, valve: ValveInput, sensors: Sensors, *, rate: float, step: float,
+        plant: AxisPlant | None = None,
+    ) -> None:  # fmt: skip
+        """Sample at `rate` [Hz], integrate in steps no longer than `step` [s]. The kernel is compiled here.
+
+        `plant`: that of `pushed(model)` among several axes; None for a plant of its own.
+        """
         self.rate, self.valve, self.sensors = rate, valve, sensors
         self.valve_b = ValveInput(valve.max_voltage, valve.timeout, second_closed(model) or 0.0)
         self.force, self._model = ForceInput(), model
-        self.plant = Stepper(pushed(model), model.state(), sample_time=1.0 / rate, step=step)
+        self.plant = plant or Stepper(pushed(model), model.state(), sample_time=1.0 / rate, step=step)
         self.total = 0  # samples since the start
         self.initial: dict[str, float] = {}
         self._inputs: dict[str, Array] = {}  # (parts,) each, the columns of _held by name
@@ -95,12 +102,20 @@ class Simulation:
 
         Raises NumericalError when the state is no longer finite; the state then is the last finite one.
         """
+        self.plant.advance_in_parts(self.hold(begin, part))
+        self.sense()
+
+    def hold(self, begin: int, part: float) -> Array:
+        """Inputs (parts, inputs) of the sample that `advance` makes; the next one overwrites them."""
         plant = self.plant
         for name, valve in self._commanded():
             valve.hold(self._inputs[name], begin, part, plant.time, plant.step)
         gain = plant.model[GAIN]
         self._inputs[LOAD][:] = self.force.at(plant.time) / gain if gain else 0.0
-        plant.advance_in_parts(self._held)
+        return self._held
+
+    def sense(self) -> None:
+        """Read the sensors at the end of a sample."""
         self.total += 1
         self._read()
 

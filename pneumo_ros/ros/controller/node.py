@@ -12,6 +12,7 @@ from pneumo_ros.axis.controller.guiding import set_guide
 from pneumo_ros.axis.controller.health import Growth, health_of
 from pneumo_ros.axis.controller.loop import Loop
 from pneumo_ros.axis.controller.settings import (
+    OF_THE_MACHINE,
     SETTINGS,
     absent,
     check,
@@ -27,6 +28,7 @@ from pneumo_ros.axis.controller.settings import (
 from pneumo_ros.axis.health import Health
 from pneumo_ros.axis.priority import take_priority
 from pneumo_ros.axis.roles import CONTROLLER
+from pneumo_ros.axis.sections import of_axis
 from pneumo_ros.records.contract import COMMAND, COMMAND_B, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
@@ -88,6 +90,10 @@ class Controller(AxisNode):
         self._listen()
         self.inputs, self._service_calls = Inputs(self, self._joint), Services(self)
         self._action = Following(self, FollowJointTrajectory) if FollowJointTrajectory else None
+
+    def chosen(self, given: Values) -> Values:
+        """Of a machine of several axes, the parameters of the one whose name ends the namespace."""
+        return of_axis(given, self.get_namespace(), {one.name for one in SETTINGS} - OF_THE_MACHINE, "controller")
 
     def _listen(self) -> None:
         self._reader = readers.JointReader(self._joint)

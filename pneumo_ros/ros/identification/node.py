@@ -18,6 +18,7 @@ from pneumo_ros.axis.identification.worker import Line, Worker
 from pneumo_ros.axis.rig import recorded_as, rig_of
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Library, load_model, model_from_dict
+from pneumo_ros.plant.axes_section import place_of
 from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.ros.description import Description, describe
 from pneumo_ros.ros.identification.target import Target
@@ -41,6 +42,7 @@ class Identification(AxisNode):
             self._rig.machine if self._rig.machine and "model" not in self.parameters.begun_with else values["model"]
         )
         self.start_model = self.model = load_model(named, self._files)
+        self._axis = place_of(named)[1] or ""  # of two.yaml:shoulder, whose recordings hold all axes
         self._words = recorded_as(values, closed_signal(self.model))
         self._arrivals, self._ready, self._waiting = Arrivals(), dict[Path, Print](), dict[Path, str]()
         self._used: dict[Path, Print] = {}  # at the last start
@@ -80,7 +82,7 @@ class Identification(AxisNode):
             {
                 "machine": self.start_model.as_dict(), "name": self.start_model.name,
                 "files": [str(path) for path in self._files], "bags": [str(path) for path in self._used],
-                "axis": self.parameters["axis"] or self._rig.namespace,
+                "axis": self.parameters["axis"] or self._rig.namespace or self._axis,
                 "joint_name": self.parameters["joint_name"] or self._rig.joint, "words": list(self._words),
                 "whole_model": self.parameters["whole_model"],
             }

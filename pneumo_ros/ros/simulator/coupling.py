@@ -42,16 +42,16 @@ class Coupling:
             names = ", ".join(self._reader.names(message)) or "none"
             sentence = f"{COUPLED} lacks position or velocity of {node.parameters['joint_name']}; its joints: {names}"
             self._log.warning(sentence, throttle_duration_sec=PAUSE)
-        elif not node.paused and sample.stamp != self._stamp:
+        elif not node.engine.paused and sample.stamp != self._stamp:
             self._stamp = sample.stamp
             self._answer(sample.stamp * 1e-9, sample.position, sample.velocity)
 
     def _answer(self, time: float, position: float, velocity: float) -> None:
         try:
-            with self._node.lock:
+            with self._node.engine.lock:
                 force = self._simulation.follow(time, position, velocity)
         except PneumoError as error:
             self._log.warning(f"{error}; no effort is sent", throttle_duration_sec=PAUSE)
             return
-        self._node.send()
+        self._node.engine.send()
         self._effort.publish(Float64MultiArray(data=[force]))

@@ -1,121 +1,138 @@
-"""The simulator: the plant as a node."""
+"""The simulator: the plant of one axis as a node."""
 
-import threading
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 from std_msgs.msg import Float64
 
 from pneumo_ros.axis.health import Health
-from pneumo_ros.axis.priority import take_priority
 from pneumo_ros.axis.roles import PLANT
 from pneumo_ros.axis.simulator.coupled import Coupled
 from pneumo_ros.axis.simulator.health import Monitor
-from pneumo_ros.axis.simulator.lockstep import WATCH, Lockstep
 from pneumo_ros.axis.simulator.machine import machine_from_parameters
 from pneumo_ros.axis.simulator.sensors import Sensors
 from pneumo_ros.axis.simulator.settings import EFFECTS, FIXED, LIVE, effects_setting, machine_settings
 from pneumo_ros.axis.simulator.simulation import Simulation
-from pneumo_ros.axis.simulator.stamps import WallStamps
+from pneumo_ros.axis.simulator.together import Together
 from pneumo_ros.axis.simulator.valve_input import ValveInput
-from pneumo_ros.axis.ticker import Ticker
-from pneumo_ros.errors import NumericalError
+from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.records.contract import COMMAND, COMMAND_B, FORCE
 from pneumo_ros.records.corrections import parse_words, wiring
 from pneumo_ros.ros import readers
 from pneumo_ros.ros.description import Description, describe
-from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.node import AxisNode, Place
 from pneumo_ros.ros.peers import loop_closed
 from pneumo_ros.ros.qos import RELIABLE, SUBSCRIBE
 from pneumo_ros.ros.rivals import Rivals
 from pneumo_ros.ros.simulator.coupling import Coupling
+from pneumo_ros.ros.simulator.engine import Engine
 from pneumo_ros.ros.simulator.outlet import Outlet
-from pneumo_ros.ros.simulator.services import Services
+from pneumo_ros.ros.simulator.services import Reset, Services
 from pneumo_ros.ros.simulator.tuning import Tuning, initial_state
 
 
+@dataclass(frozen=True)
+class Member:
+    """One of several axes: its name, place and model, the engine of all, and whom to tell of another model."""
+
+    axis: str
+    place: Place
+    model: Model
+    engine: Engine
+    adopted: Callable[[], None]
+
+    @property
+    def all(self) -> Together:
+        """The simulations of all axes."""
+        assert isinstance(self.engine.plant, Together)
+        return self.engine.plant
+
+
 class Simulator(AxisNode):
-    """Steps the machine in real time or in lockstep, takes `valve/command`, sends sensor readings."""
+    """The machine of one axis, in real time or in lockstep: takes `valve/command`, sends sensor readings."""
 
     def __init__(
-        self, effects_files: Iterable[str | Path] = (), tolerated: Callable[[str], bool] = lambda name: False
-    ) -> None:
-        """Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, for a bad value, and where
+        self, effects_files: Iterable[str | Path] = (), tolerated: Callable[[str], bool] = lambda name: False,
+        member: Member | None = None,
+    ) -> None:  # fmt: skip
+        """`member`: what it is among several axes; None for a machine of one axis.
+
+        Raises UsageError for an unknown effect or parameter, unless it is `tolerated`, for a bad value, and where
         there is another plant.
         """
-        super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False)  # it is the source of that time
+        place = member.place if member else None
+        super().__init__("simulator", [*FIXED, *LIVE], simulated_time=False, place=place)  # it is the source of time
         self.rivals = Rivals(self, PLANT)
-        files = tuple(effects_files)
-        self.lock = threading.Lock()
-        self.paused = self.parameters["start_paused"]
-        self.fault: str | None = None
+        files, self._member = tuple(effects_files), member
         self.simulation = self._build(files, tolerated)
         self.rivals.settle()
-        coupled = self.parameters["coupled"]  # the clock is that of the other side
-        self._simulated_time = self.parameters["publish_clock"] or self.parameters["real_time_factor"] != 1.0 or coupled
+        coupled = isinstance(self.simulation, Coupled)  # the clock is that of the other side
+        self.engine = member.engine if member else Engine(self, self.simulation, driven=coupled)
         self._wired = wiring(parse_words(self.parameters["wired_as"]))
         joint, chambers = self.parameters["joint_name"], self.simulation.model.chambers
-        self.outlet = Outlet(self, joint, self._simulated_time and not coupled, self._wired, chambers)
-        self._stamps = WallStamps()
+        clock = self.engine.simulated_time and not coupled and not member
+        self.outlet = Outlet(self, joint, clock, self._wired, chambers)
+        self.engine.serve(lambda stamp: self.outlet.send(self.simulation, stamp))
         self._description = Description(self, self._describe)
-        self._tuning = Tuning(
-            self.parameters, self.simulation, self.lock, self.get_logger(), self._description.publish, files
-        )
-        self._service_calls = Services(self)
-        # before that of chamber a: of two commands that have both arrived, it is read first
-        self.create_subscription(Float64, COMMAND_B, self._command_b, SUBSCRIBE, raw=True)
-        self._commands = self.create_subscription(Float64, COMMAND, self._command, SUBSCRIBE, raw=True)
-        self.create_subscription(Float64, FORCE, self._push, RELIABLE, raw=True)
+        self._tuning = self._make_tuning(files)
+        self._reset = Reset(self, self.engine, self.simulation)
+        self._service_calls = None if member else Services(self, self.engine)
+        self._listen()
         self.coupling = Coupling(self, self.simulation) if isinstance(self.simulation, Coupled) else None
-        factor = self.parameters["real_time_factor"]
-        self._period = 1e9 / self.simulation.rate / (factor or 1.0)  # ns of wall time
-        self.lockstep = self._make_lockstep() if factor == 0.0 and not self.coupling else None
-        self._ticker = None if self.lockstep or self.coupling else self._make_ticker()
-        self._monitor = Monitor(self.simulation, self._ticker or self.lockstep)
+        self._monitor = Monitor(self.simulation, self.engine.pace)
 
     # --- construction -----------------------------------------------------------------------------------------------
 
     def _build(self, files: tuple[str | Path, ...], tolerated: Callable[[str], bool]) -> Simulation:
-        values = self.parameters
-        values.refuse_unknown(lambda name: tolerated(name) or "." in name or name == EFFECTS)
+        values, member = self.parameters, self._member
+        values.refuse_unknown(lambda name: not member and (tolerated(name) or "." in name or name == EFFECTS))
         given = {name: value for name, value in values.given.items() if not tolerated(name)}
-        model = machine_from_parameters(values["model"], given, files)
+        model = member.model if member else machine_from_parameters(values["model"], given, files)
         values.declare([effects_setting(model), *machine_settings(model, list(model.parameters))])
         model.state(**initial_state(values.values()))
         for sentence in model.cautions():
             self.get_logger().warning(sentence)
         valve = ValveInput(values["max_voltage"], values["command_timeout"], closed_signal(model))
-        sensors = Sensors(seed=values["seed"])
+        sensors, rate, step = Sensors(seed=values["seed"]), values["publish_rate"], values["step"]
+        if member:
+            own = member.all.plant.axes[member.axis]
+            return member.all.add(member.axis, Simulation(model, valve, sensors, rate=rate, step=step, plant=own))
         kind = Coupled if values["coupled"] else Simulation
-        return kind(model, valve, sensors, rate=values["publish_rate"], step=values["step"])
+        return kind(model, valve, sensors, rate=rate, step=step)
 
-    def _make_ticker(self) -> Ticker:
-        return Ticker(self._period, self._tick, self.fail)
+    def _make_tuning(self, files: tuple[str | Path, ...]) -> Tuning:
+        member, log = self._member, self.get_logger()
+        if member is None:
+            return Tuning(self.parameters, self.simulation, self.engine.lock, log, self._description.publish, files)
+        axis, plant = member.axis, member.all.plant
+        return Tuning(
+            self.parameters, self.simulation, self.engine.lock, log, self._adopted, files,
+            lambda model: plant.machine.with_axes({axis: model}),
+        )  # fmt: skip
 
-    def _make_lockstep(self) -> Lockstep:
-        lockstep = Lockstep(
-            lambda: self._advance(0, 1.0),
-            self._send,
-            lambda: loop_closed(self, self.outlet.joint_states, self._commands),
-            lambda: self.paused,
-            lambda act: self.executor.create_task(act),
-            self.get_logger(),
-            wait=self.parameters["lockstep_wait"],
-            timeout=self.parameters["lockstep_timeout"],
-        )
-        self.create_timer(WATCH, lockstep.watch, clock=self.steady_clock)
-        return lockstep
+    def _adopted(self) -> None:
+        """The machine is another one: tell it, alone and among the others."""
+        self._description.publish()
+        if self._member:
+            self._member.adopted()
+
+    def _listen(self) -> None:
+        # before that of chamber a: of two commands that have both arrived, it is read first
+        self.create_subscription(Float64, COMMAND_B, self._command_b, SUBSCRIBE, raw=True)
+        commands = self.create_subscription(Float64, COMMAND, self._command, SUBSCRIBE, raw=True)
+        self.create_subscription(Float64, FORCE, self._push, RELIABLE, raw=True)
+        self._axis = self._member.axis if self._member else ""
+        self.engine.loop(self._axis, lambda: loop_closed(self, self.outlet.joint_states, commands))
 
     # --- life -------------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Begin at the initial state."""
-        self.simulation.reset()
-        if self._ticker:
-            self._ticker.start()
-            take_priority(self.parameters["real_time_priority"])  # after the start: new threads do not inherit it
+        if self._member is None:
+            self.engine.start()
 
     def ready(self) -> str:
         """The machine and its rate."""
@@ -124,52 +141,17 @@ class Simulator(AxisNode):
 
     def finish(self) -> None:
         """Stop the plant."""
-        self.paused = True
-        if self._ticker:
-            self._ticker.stop()
+        self.engine.stop()
 
     def simulated_clock(self) -> int:
         """Simulated time [ns]."""
         return self.simulation.clock
 
-    def single_step(self) -> None:
-        """One sample while paused; with the lock held."""
-        now = time.monotonic_ns()
-        if self.lockstep:
-            if self._advance(0, 1.0):
-                self.lockstep.publish()
-        elif self._advance(round(now - self._period), self._period / self.simulation.plant.parts):
-            self._send(now)
-
-    def _tick(self, deadline: int) -> None:
-        """The sample that ends at `deadline` [ns, CLOCK_MONOTONIC] is over: simulate it."""
-        begin, part = round(deadline - self._period), self._period / self.simulation.plant.parts
-        with self.lock:
-            if not self.paused and self._advance(begin, part):
-                self._send(deadline)
-
-    def _advance(self, begin: int, part: float) -> bool:
-        """One sample, see `Simulation.advance`; False, and a pause, if the state is not finite."""
-        try:
-            self.simulation.advance(begin, part)
-        except NumericalError as error:
-            self.fault, self.paused = str(error), True
-            self.get_logger().error(f"{error}; paused: call ~/reset, or change a parameter first")
-        return self.fault is None
-
-    def send(self) -> None:
-        """Send the present sample, stamped with the simulation's time."""
-        self._send()
-
-    def _send(self, moment: int = 0) -> None:
-        """Send the present sample, stamped with simulated time or the wall time of `moment` [ns, CLOCK_MONOTONIC]."""
-        stamp = self.simulation.clock if self._simulated_time else self._stamps.at(moment)
-        self.outlet.send(self.simulation, stamp)
+    # --- commands ---------------------------------------------------------------------------------------------------
 
     def _command(self, message: bytes) -> None:
         self._take(self.simulation.valve, readers.number(message))
-        if self.lockstep:
-            self.lockstep.command()
+        self.engine.answered(self._axis)
 
     def _command_b(self, message: bytes) -> None:
         """The command of the valve of chamber b; in lockstep it comes before that of chamber a, which goes on."""
@@ -181,7 +163,7 @@ class Simulator(AxisNode):
             self.get_logger().warning(f"{COMMAND_B} is not used: {name} has one command", throttle_duration_sec=10.0)
 
     def _take(self, valve: ValveInput, sent: float) -> None:
-        arrival, voltage = time.monotonic_ns() if self._ticker else 0, self._wired.volts(sent)
+        arrival, voltage = time.monotonic_ns() if self.engine.ticker else 0, self._wired.volts(sent)
         clipped = valve.clipped
         if not valve.accept(voltage, arrival):
             self.get_logger().warning(f"valve command {voltage} refused", throttle_duration_sec=5.0)
@@ -201,7 +183,7 @@ class Simulator(AxisNode):
 
     def health(self) -> Health:
         """Rates, counts and warnings; see `Monitor`."""
-        return self._monitor.look(self.paused, self.fault, self._tuning.compiler.busy)
+        return self._monitor.look(self.engine.paused, self.engine.fault, self._tuning.compiler.busy)
 
     def _describe(self) -> dict[str, object]:
         wired = self.parameters["wired_as"]

@@ -1,59 +1,67 @@
 """~/reset, ~/pause and ~/step."""
 
-from typing import TYPE_CHECKING
-
 from std_srvs.srv import SetBool, Trigger
 
-if TYPE_CHECKING:
-    from pneumo_ros.ros.simulator.node import Simulator
+from pneumo_ros.axis.simulator.simulation import Simulation
+from pneumo_ros.axis.simulator.together import Together
+from pneumo_ros.ros.node import AxisNode
+from pneumo_ros.ros.simulator.engine import Engine
+
+
+class Reset:
+    """~/reset of one axis, or of all that an engine moves."""
+
+    def __init__(self, node: AxisNode, engine: Engine, plant: Simulation | Together) -> None:
+        """`plant` is what goes back to its initial state."""
+        self._node, self._engine, self._plant = node, engine, plant
+        node.create_service(Trigger, "~/reset", self._reset)
+
+    def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        engine = self._engine
+        with engine.lock:
+            self._plant.reset()
+            if engine.fault:
+                engine.fault, engine.paused = None, False
+        self._node.get_logger().info("reset to the initial state")
+        response.success, response.message = True, "at the initial state, valve closed"
+        _go_on(engine)
+        return response
 
 
 class Services:
-    """The services of a simulator."""
+    """~/pause and ~/step of all that an engine moves."""
 
-    def __init__(self, node: "Simulator") -> None:
+    def __init__(self, node: AxisNode, engine: Engine) -> None:
         """Offer them below the node's own name."""
-        self._node = node
-        node.create_service(Trigger, "~/reset", self._reset)
+        self._engine = engine
         node.create_service(SetBool, "~/pause", self._pause)
         node.create_service(Trigger, "~/step", self._step)
 
-    def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        node = self._node
-        with node.lock:
-            node.simulation.reset()
-            if node.fault:
-                node.fault, node.paused = None, False
-        node.get_logger().info("reset to the initial state")
-        response.success, response.message = True, "at the initial state, valve closed"
-        self._resume()
-        return response
-
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        node = self._node
-        if node.fault and not request.data:
-            response.success, response.message = False, f"{node.fault}; call ~/reset first"
+        engine = self._engine
+        if engine.fault and not request.data:
+            response.success, response.message = False, f"{engine.fault}; call ~/reset first"
             return response
-        node.paused = request.data
+        engine.paused = request.data
         response.success, response.message = True, "paused" if request.data else "running"
-        if not request.data:
-            self._resume()
+        _go_on(engine)
         return response
 
     def _step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        node = self._node
-        if node.coupling:
+        engine = self._engine
+        if engine.driven:
             response.success, response.message = False, "the simulator that sends coupled/joint_states makes the steps"
             return response
-        if not node.paused or node.fault:
-            response.success, response.message = False, node.fault or "running; call ~/pause with data: true first"
+        if not engine.paused or engine.fault:
+            response.success, response.message = False, engine.fault or "running; call ~/pause with data: true first"
             return response
-        with node.lock:
-            node.single_step()
-        response.success = not node.fault
-        response.message = node.fault or f"at {node.simulation.time:.6g} s"
+        with engine.lock:
+            engine.single_step()
+        response.success = not engine.fault
+        response.message = engine.fault or f"at {engine.plant.time:.6g} s"
         return response
 
-    def _resume(self) -> None:
-        if self._node.lockstep and not self._node.paused:
-            self._node.lockstep.resume()
+
+def _go_on(engine: Engine) -> None:
+    if engine.lockstep and not engine.paused:
+        engine.lockstep.resume()

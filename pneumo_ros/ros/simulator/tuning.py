@@ -12,6 +12,7 @@ from pneumo_ros.axis.simulator.machine import changed, check_live
 from pneumo_ros.axis.simulator.settings import EFFECTS, machine_settings
 from pneumo_ros.axis.simulator.simulation import Simulation
 from pneumo_ros.errors import UsageError
+from pneumo_ros.multiaxis import Machine
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import closed_signal, second_closed
 from pneumo_ros.ros.parameters import Parameters, Values
@@ -32,12 +33,16 @@ class Tuning:
         logger: RcutilsLogger,
         adopted: Callable[[], None],
         effects_files: Iterable[str | Path],
+        whole: Callable[[Model], Model | Machine] = lambda model: model,
     ) -> None:
-        """`lock` is held while the simulation is touched; `adopted` is called after every change of the machine."""
+        """`lock` is held while the simulation is touched; `adopted` is called after every change of the machine.
+
+        `whole`: see `Compiler`.
+        """
         self._parameters, self._simulation, self._lock = parameters, simulation, lock
         self._logger, self._adopted = logger, adopted
         self._wanted = simulation.model
-        self.compiler = Compiler(effects_files, self._compiled)
+        self.compiler = Compiler(effects_files, self._compiled, whole)
         self._take_settings(parameters.values())
         parameters.check, parameters.apply = self._check, self._apply
 
