@@ -45,7 +45,9 @@ def judged(
                 held=r,
                 gain=gains(held.evidence, held.residual, r),
                 size=magnitude(h.coordinates, h.u),
-                share=max(explained(held.evidence, held.residual, r, acts), prior / max(strained, MARGIN)),
+                share=max(
+                    explained(held.evidence, held.residual, r, acts, textured=first), prior / max(strained, MARGIN)
+                ),
                 known=prior,
                 first=first,
                 score=Score(float(gained[0]) + prior - occam(base, h), float(gained[1])),

@@ -51,15 +51,17 @@ def gains(evidence: Evidence, before: Array, after: Array, rows: Rows | None = N
     return {name: 1.0 - second[name] / first[name] for name in first}
 
 
-def explained(evidence: Evidence, before: Array, after: Array, rows: Rows | None = None) -> float:
-    """Largest reduction, over the equations, from `before` to `after`, as a share of the misfit that matters.
+def explained(
+    evidence: Evidence, before: Array, after: Array, rows: Rows | None = None, *, textured: bool = False
+) -> float:
+    """Largest reduction, over the equations, from `before` to `after`, as a share of the mean square beyond noise.
 
-    That is the mean square beyond noise, and beyond a texture of forces. In `rows` (residuals,); over all breakaways if
-    `rows` holds too few of them, as when each changes a little.
+    `textured`: and beyond a texture of forces. In `rows` (residuals,); over all breakaways if `rows` holds too few of
+    them, as when each changes a little.
     """
     whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEWEST_OF} for r in (before, after)]
     first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
-    noise, rough = {name: NOISE.get(name, 1.0) for name in first}, texture(evidence)
+    noise, rough = {name: NOISE.get(name, 1.0) for name in first}, texture(evidence) if textured else {}
     shares = ((first[n] - second[n]) / max(first[n] - noise[n] - rough.get(n, 0.0), 0.1 * noise[n]) for n in first)
     return max(shares, default=0.0)
 

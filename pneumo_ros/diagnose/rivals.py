@@ -48,9 +48,9 @@ def simplest(base: BaseFit, held: BaseFit, candidates: Sequence[Candidate]) -> C
         return None
     for one in candidates:
         other = replace(one, contained=True) if one.partial else one
-        if one.name in _contained(base, best) and not other.objections:
-            if _between(held, best, other) < MATERIAL or _tied(best, other):
-                return other
+        little = _between(held, best, other) < MATERIAL
+        if one.name in _contained(base, best) and not other.objections and (little or _tied(best, other)):
+            return other
     return best
 
 

@@ -14,7 +14,7 @@ NOISE = np.random.default_rng(0).normal(size=N)
 EVIDENCE = cast(Evidence, SimpleNamespace(names=("chamber_a 200 ms",), family=np.zeros(N, dtype=np.int64)))
 
 
-def breakaways(count: int, drive: float = 0.0) -> Evidence:
+def breakaways(count: int, drive: float = 1.0) -> Evidence:
     """Breakaways known to 1 N on a machine whose drive force is `drive` [N]."""
     family, noise = np.zeros(count, dtype=np.int64), np.ones(count)
     return cast(Evidence, SimpleNamespace(names=("breakaway",), family=family, noise=noise, drive=drive))
@@ -66,7 +66,7 @@ def test_one_block_alone_decides_nothing(sign: float) -> None:
 def test_breakaways_that_all_change_a_little_are_judged_together(name: str, least: float) -> None:
     """There are twenty of them at most, and their noise is generous: none changes by a quarter of it."""
     family, noise = np.zeros(20, dtype=np.int64), np.ones(20)
-    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=family, noise=noise, drive=0.0))
+    evidence = cast(Evidence, SimpleNamespace(names=(name,), family=family, noise=noise))
     before, after = np.full(20, 0.95), np.full(20, 0.75)
     assert not acting(before, after).any()
     assert explained(evidence, before, after, acting(before, after)) == pytest.approx(least, abs=0.1)
@@ -75,5 +75,6 @@ def test_breakaways_that_all_change_a_little_are_judged_together(name: str, leas
 def test_what_is_no_larger_than_a_texture_need_not_be_removed() -> None:
     before, after = np.full(20, 2.0), np.full(20, 1.9)  # N
     everywhere = np.ones(20, dtype=bool)
-    assert explained(breakaways(20), before, after, everywhere) < 0.25
-    assert explained(breakaways(20, drive=2.0 / MATERIAL_FORCE), before, after, everywhere) > 1.0
+    machine = breakaways(20, drive=2.0 / MATERIAL_FORCE)
+    assert explained(machine, before, after, everywhere) < 0.25
+    assert explained(machine, before, after, everywhere, textured=True) > 1.0
