@@ -2,10 +2,10 @@
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.axes_section import from_anywhere
 
 if TYPE_CHECKING:
     from pneumo_ros.reading.rig_file import Rig
@@ -25,8 +25,7 @@ def rig_text(
     machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, closed: float | None = None
 ) -> str:
     """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve."""
-    if Path(machine).is_file():
-        machine = str(Path(machine).resolve())
+    machine = from_anywhere(machine)
     said = (
         "  # closed: 0V  # the command that closes the valve, by its data sheet: live work needs it\n"
         if closed is None
@@ -76,7 +75,7 @@ def _machine(options: argparse.Namespace, said: str) -> str:
     if present in (None, "", *_UNSAID):
         options.model = said
         return ""
-    same = present == said or (Path(present).is_file() and Path(present).resolve() == Path(said).resolve())
+    same = from_anywhere(present) == from_anywhere(said)
     return "" if same else f"Machine: {present}, in place of {said}, which {options.rig_file} names"
 
 

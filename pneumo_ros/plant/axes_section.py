@@ -65,6 +65,14 @@ def place_of(name_or_path: str | Path) -> tuple[str | Path, str | None]:
     )
 
 
+def from_anywhere(name_or_path: str | Path) -> str:
+    """A machine file, or an axis in it, by its whole path; the name of a shipped machine as it is."""
+    path, axis = place_of(name_or_path)
+    if not Path(path).is_file():
+        return str(name_or_path)
+    return f"{Path(path).resolve()}:{axis}" if axis else str(Path(path).resolve())
+
+
 def one_axis(given: Mapping[str, Any], place: str | Path, axis: str | None) -> Mapping[str, Any]:
     """The sections of a machine of one axis: all of them, or those of `axis`.
 

@@ -21,6 +21,7 @@ from typing import Any
 from pneumo_ros.errors import DataError, UsageError, brief
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.axes_section import place_of
 from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.records.corrections import parse_words, wiring
@@ -70,7 +71,7 @@ def read_rig(path: str) -> Rig:
     except UsageError as error:
         raise UsageError(f"rig file {path}: {error}") from error
     beside = Path(path).parent / rig.machine
-    return Rig(**{**vars(rig), "machine": str(beside)}) if rig.machine and beside.is_file() else rig
+    return Rig(**{**vars(rig), "machine": str(beside)}) if rig.machine and Path(place_of(beside)[0]).is_file() else rig
 
 
 def _rig(given: Mapping[str, Any]) -> Rig:

@@ -9,6 +9,7 @@ from typing import Any
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.files import write_whole
 from pneumo_ros.plant import Model, save_model
+from pneumo_ros.plant.axes_section import from_anywhere
 from pneumo_ros.reading.read import ATMOSPHERE, ReadOptions
 from pneumo_ros.workbench.job import Job
 from pneumo_ros.workbench.live import Live
@@ -45,9 +46,7 @@ class Desk:
     def __init__(self, folder: Path, given: Given) -> None:
         self.folder, self.given = folder, given
         self.lock = threading.RLock()
-        path = Path(given.machine)
-        machine = str(path.resolve()) if path.is_file() else given.machine
-        self.variants = [Variant(0, machine, "as given")]
+        self.variants = [Variant(0, from_anywhere(given.machine), "as given")]
         self.current, self.revision, self.message = 0, 0, ""
         self.chosen = 0  # counts the changes to another variant
         self.ticked: frozenset[str] = frozenset(self.model().effects)

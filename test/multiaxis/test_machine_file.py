@@ -8,6 +8,9 @@ from multiaxis.machines import LINE, two
 from pneumo_ros.errors import UsageError
 from pneumo_ros.multiaxis import load_machine, machine_text
 from pneumo_ros.plant import load_model
+from pneumo_ros.plant.axes_section import from_anywhere
+from pneumo_ros.reading.rig_file import read_rig
+from pneumo_ros.workbench.desk import Desk, Given
 
 PRUNING = Path(__file__).parents[2] / "pneumo_ros" / "config" / "arm" / "pruning.yaml"
 TEXT = machine_text(two(LINE))
@@ -25,6 +28,18 @@ def test_a_file_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert again.as_dict() == two(LINE).as_dict()
     assert list(again.axes) == ["shoulder", "elbow"]
     assert load_machine(written(tmp_path, machine_text(two()))).supply is None
+
+
+def test_an_axis_of_a_file_is_found_from_another_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = written(tmp_path, TEXT)
+    (tmp_path / "rig.yaml").write_text("rig:\n  machine: two.yaml:elbow\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert from_anywhere("two.yaml:elbow") == f"{file.resolve()}:elbow"
+    assert from_anywhere("axis") == "axis"
+    desk = Desk(tmp_path / "elsewhere", Given(machine="two.yaml:elbow"))
+    monkeypatch.chdir("/")
+    assert desk.model().as_dict() == load_model(desk.variant.machine).as_dict() == two(LINE).axes["elbow"].as_dict()
+    assert load_model(read_rig(tmp_path / "rig.yaml").machine).name == "two:elbow"
 
 
 def test_one_axis_of_several_is_a_machine(tmp_path: Path) -> None:
