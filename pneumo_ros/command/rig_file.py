@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pneumo_ros.errors import UsageError
-from pneumo_ros.plant.axes_section import from_anywhere
 
 if TYPE_CHECKING:
     from pneumo_ros.reading.rig_file import Rig
@@ -25,6 +24,8 @@ def rig_text(
     machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, closed: float | None = None
 ) -> str:
     """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve."""
+    from pneumo_ros.plant.axes_section import from_anywhere  # slow; --help does not need it
+
     machine = from_anywhere(machine)
     said = (
         "  # closed: 0V  # the command that closes the valve, by its data sheet: live work needs it\n"
@@ -75,6 +76,8 @@ def _machine(options: argparse.Namespace, said: str) -> str:
     if present in (None, "", *_UNSAID):
         options.model = said
         return ""
+    from pneumo_ros.plant.axes_section import from_anywhere  # slow; --help does not need it
+
     same = from_anywhere(present) == from_anywhere(said)
     return "" if same else f"Machine: {present}, in place of {said}, which {options.rig_file} names"
 

@@ -83,12 +83,13 @@ class Intake:
     def take(self) -> list[Taken]:
         """Everything that has arrived, topic by topic."""
         taken: list[Taken] = []
+        settled = time.monotonic() - self._began > EARLY
         for topic, subscription in self._subscriptions.items():
             loss, fetch, kind = self._losses[topic], subscription.handle.take_message, subscription.msg_type
             while (found := fetch(kind, True)) is not None:
                 payload, info = found
                 publisher = _publisher(info)
-                later = bool(publisher) and bool(self._early) and not self._is_early(publisher)
+                later = settled and bool(publisher) and bool(self._early) and not self._is_early(publisher)
                 loss.note(publisher, info["publication_sequence_number"], began_later=later)
                 taken.append(Taken(info["received_timestamp"], topic, payload, info["source_timestamp"]))
         return taken
