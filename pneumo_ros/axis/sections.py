@@ -1,6 +1,7 @@
 """Dotted parameters of a node as sections of a machine file, and back; what one axis of several has of them."""
 
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any
 
 from pneumo_ros.errors import UsageError
@@ -60,6 +61,21 @@ def of_axis(given: Given, namespace: str, own: Collection[str], node: str) -> Gi
         )
     sections = nested(of_the_machine(given, names, own))
     return {"joint_name": axis, **flat(axis_sections(sections)[axis]), **settings_of(given, axis, own)}
+
+
+def with_arm(given: Given) -> Given:
+    """The same, with the coefficients of an arm in place of its URDF, whose file is named from the present folder.
+
+    UsageError as `plant.arm_section.coefficients`.
+    """
+    arm = {name: value for name, value in given.items() if name.startswith("arm_load.")}
+    if "arm_load.urdf" not in arm:
+        return given
+    from pneumo_ros.plant.arm_section import coefficients  # Pinocchio is optional, and seldom needed
+
+    found = coefficients(nested(arm)["arm_load"], given.get("piston.stroke"), Path())
+    rest = {name: value for name, value in given.items() if name not in arm}
+    return rest | {f"arm_load.{name}": value for name, value in found.items()}
 
 
 def listed_axes(given: Given) -> tuple[str, ...]:

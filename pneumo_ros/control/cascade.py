@@ -25,7 +25,8 @@ class Cascade(ApproachingLaw):
     against s: the piston springs back after a slip, and pressures that followed would be missing at the next breakaway.
     If the setpoint is coming back to a piston ahead of it, so that s changes sign within `lead`, the piston waits,
     loaded in the later direction. Scale of friction and load are learnt while the piston slides. F_d' has only smooth
-    terms: M j_d, K_D s and the friction that grows with speed. The paper's term in s within F', needed to prove
+    terms: M j_d, K_D s, the friction that grows with speed and the load that changes along the stroke. An arm has its
+    M(y) and its load M'(y) v^2 / 2 + E'(y) (see `arm_load`). The paper's term in s within F', needed to prove
     stability, is below 1 N/s here and is left out.
     """
 
@@ -47,7 +48,7 @@ class Cascade(ApproachingLaw):
 
     def _force(self, setpoint: Setpoint, state: AxisState, wanted: Wanted, dt: float) -> tuple[float, float]:
         """F_d [N] and the smooth part of its rate [N/s]."""
-        mass, v = self.machine.moving_mass, state.velocity
+        (mass, load, slope), v = state.moved, state.velocity
         s, acceleration = wanted.velocity - v, wanted.acceleration
         moving = setpoint.velocity != 0.0
         asked = moving and self.lead > 0.0 and not self.friction.sliding
@@ -56,10 +57,10 @@ class Cascade(ApproachingLaw):
             friction, s, acceleration = self.friction.wait(v, dt, self.correction * later), 0.0, 0.0
         else:
             friction = self.friction.step(v, dt, self.correction * s, held=moving)
-        measured = state.air.force - mass * state.acceleration - self.machine.load
+        measured = state.air.force - mass * state.acceleration - load
         self.friction.learn(measured, v, 1.0 - math.exp(-self.learning * dt))
-        force = mass * acceleration + self.damping * s + friction + self.machine.load
-        rate = mass * setpoint.jerk + self.friction.running_slope(v) * acceleration
+        force = mass * acceleration + self.damping * s + friction + load
+        rate = mass * setpoint.jerk + self.friction.running_slope(v) * acceleration + slope * v
         return force, rate + self.damping * (acceleration - state.acceleration)
 
     def _later(self, setpoint: Setpoint, state: AxisState) -> float:

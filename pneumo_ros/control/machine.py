@@ -2,11 +2,17 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from types import MappingProxyType
+
+from pneumo_ros.control.arm import ENERGIES, MASSES, Arm, Terms
 
 ATMOSPHERE = "rod_atmospheric_force"  # an effect without parameters
 SECOND = {"second_valve", "second_regulator"}  # effects: the valve of chamber b has a command of its own
 FLOW = "arctan_flow"  # the flow that laws invert, alone or with a share of choked_flow
+
+
+ARM = MASSES + ENERGIES  # parameters of an arm that the rod moves
 
 
 def _known(dotted: str, default: float, absent: float | None = None) -> float:
@@ -53,6 +59,7 @@ class Machine:
     null_offset_b: float = _known("second_valve.offset", 0.0)
     spool_frequency: float = _known("valve_spool_dynamics.angular_frequency", 1000.0)  # 1000: no lag
     spool_damping: float = _known("valve_spool_dynamics.damping_ratio", 0.7)
+    arm: tuple[float, ...] = (0.0,) * len(ARM)  # coefficients of `arm_load`
     atmosphere_on_rod: bool = True
     has_flow: bool = True  # whether `FLOW` gives the valve flow
     effects: tuple[str, ...] = field(default=(), compare=False)  # of the machine, for messages
@@ -64,7 +71,10 @@ class Machine:
         Parameters that `values` lacks count as absent; names that no law uses are ignored.
         """
         known = {f.name: float(values.get(f.metadata["dotted"], f.metadata["absent"])) for f in _FIELDS}
-        return cls(**known, atmosphere_on_rod=ATMOSPHERE in effects, has_flow=FLOW in effects, effects=tuple(effects))
+        arm = tuple(float(values.get(name, 0.0)) for name in ARM)
+        return cls(
+            **known, arm=arm, atmosphere_on_rod=ATMOSPHERE in effects, has_flow=FLOW in effects, effects=tuple(effects)
+        )
 
     @property
     def closed_signal(self) -> float:
@@ -76,10 +86,27 @@ class Machine:
         """The command [V] that closes the valve of chamber b, where each chamber has a valve of its own; else None."""
         return -self.null_offset_b + 0.0 if SECOND & {*self.effects} else None
 
+    @cached_property
+    def _arm(self) -> Arm | None:
+        return Arm(self.stroke, self.arm) if any(self.arm) else None
+
+    def terms(self, position: float, velocity: float) -> Terms:
+        """Moving mass, load and its slope at `position` [m] and `velocity` [m/s]: an arm's change along the stroke."""
+        mass = self.mass + self.mass_added
+        if self._arm is None:
+            return Terms(mass, self.load, 0.0)
+        arm = self._arm.terms(position, velocity)
+        return Terms(mass + arm.mass, self.load + arm.load, arm.slope)
+
     @property
     def moving_mass(self) -> float:
-        """Everything that accelerates with the piston [kg]."""
-        return self.mass + self.mass_added
+        """Everything that accelerates with the piston [kg]; an arm where it is heaviest."""
+        return self.mass + self.mass_added + (self._arm.heaviest if self._arm else 0.0)
+
+    def opposing(self, side: float) -> float:
+        """Largest load along the stroke [N] against motion to `side`, +1 extends."""
+        low, high = self._arm.loads if self._arm else (0.0, 0.0)
+        return side * self.load + max(side * low, side * high)
 
     @property
     def atmosphere(self) -> float:
@@ -88,8 +115,11 @@ class Machine:
 
 
 _FIELDS = tuple(f for f in fields(Machine) if "dotted" in f.metadata)
-PARAMETERS: Mapping[str, float] = MappingProxyType({f.metadata["dotted"]: getattr(Machine, f.name) for f in _FIELDS})
+_NO_ARM = dict.fromkeys(ARM, 0.0)
+PARAMETERS: Mapping[str, float] = MappingProxyType(
+    {f.metadata["dotted"]: getattr(Machine, f.name) for f in _FIELDS} | _NO_ARM
+)
 """Dotted name -> default, of the parameters that laws use; in the order of a machine file."""
 
-ABSENT: Mapping[str, float] = MappingProxyType({f.metadata["dotted"]: f.metadata["absent"] for f in _FIELDS})
+ABSENT: Mapping[str, float] = MappingProxyType({f.metadata["dotted"]: f.metadata["absent"] for f in _FIELDS} | _NO_ARM)
 """Dotted name -> value for a machine without that effect."""

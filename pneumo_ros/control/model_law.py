@@ -4,6 +4,7 @@ import math
 from abc import abstractmethod
 from typing import NamedTuple
 
+from pneumo_ros.control.arm import Terms
 from pneumo_ros.control.estimator import StateEstimator
 from pneumo_ros.control.friction import FrictionObserver
 from pneumo_ros.control.gain import Gain
@@ -19,12 +20,13 @@ REST = 0.02  # s without motion after which the piston counts as resting
 
 
 class AxisState(NamedTuple):
-    """The axis as estimated: position [m], velocity [m/s], acceleration [m/s2], and its chambers."""
+    """The axis as estimated: position [m], velocity [m/s], acceleration [m/s2], its chambers, what the rod moves."""
 
     position: float
     velocity: float
     acceleration: float
     air: Chambers
+    moved: Terms
 
 
 class ModelLaw(Law):
@@ -69,11 +71,11 @@ class ModelLaw(Law):
 
     def _estimate(self, measurement: Measurement, p_a: float, p_b: float, dt: float) -> AxisState:
         air = chambers(self.machine, measurement.position, p_a, p_b)
-        self.estimator.bandwidth = self.bandwidth
-        self.estimator.update(measurement.position, air.force / self.machine.moving_mass, dt)
-        seen = self.estimator
+        seen, machine = self.estimator, self.machine
+        seen.bandwidth = self.bandwidth
+        seen.update(measurement.position, air.force / machine.terms(measurement.position, seen.velocity).mass, dt)
         velocity = seen.velocity if measurement.velocity is None else measurement.velocity
-        return AxisState(seen.position, velocity, seen.acceleration, air)
+        return AxisState(seen.position, velocity, seen.acceleration, air, machine.terms(seen.position, velocity))
 
     def _may_rest(self, setpoint: Setpoint, state: AxisState) -> bool:
         error = abs(setpoint.position - state.position)

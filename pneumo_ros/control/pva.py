@@ -11,9 +11,10 @@ class Pva(ModelLaw):
     """opening = u_d + K_p e + K_v e' + K_a e'' + K_f (F_d - F) + K_i integral of e, e = y_d - y.
 
     u_d and F_d are the model's opening and force for the wanted motion: F_d = M a_d + F_friction(v_d) + F_load with
-    the friction of bristles that follow v_d; u_d holds the chambers' force at v_d. F = A_a p_a - A_b p_b - F_atm is fed
-    back only while motion is wanted: at rest, friction can balance any force below its limit. The integral works only
-    at rest, while the opening is not saturated, and is cleared when the piston has arrived.
+    the friction of bristles that follow v_d; u_d holds the chambers' force at v_d, or lets it follow the load of an
+    arm. F = A_a p_a - A_b p_b - F_atm is fed back only while motion is wanted: at rest, friction can balance any force
+    below its limit. The integral works only at rest, while the opening is not saturated, and is cleared when the piston
+    has arrived.
 
     Sources: S. R. Pandian, F. Takemura, Y. Hayakawa and S. Kawamura, Pressure Observer-Controller Design for Pneumatic
     Cylinder Actuators, IEEE/ASME Trans. Mechatronics 7 (2002), and J. Wang, J. Pu and P. Moore, A Practical Control
@@ -36,11 +37,15 @@ class Pva(ModelLaw):
 
     def opening(self, setpoint: Setpoint, state: AxisState, dt: float) -> float:
         """Opening [V] of the valve."""
-        m, e = self.machine, setpoint.position - state.position
+        m, e, moved = self.machine, setpoint.position - state.position, state.moved
         self._wanted_friction.machine = m
         friction = self._wanted_friction.step(setpoint.velocity, dt)
-        force = m.moving_mass * setpoint.acceleration + friction + m.load
-        wanted = opening(m, state.air, setpoint.velocity, 0.0) + self.proportional * e + self._integral
+        force = moved.mass * setpoint.acceleration + friction + moved.load
+        wanted = (
+            opening(m, state.air, setpoint.velocity, moved.slope * setpoint.velocity)
+            + self.proportional * e
+            + self._integral
+        )
         wanted += self.derivative * (setpoint.velocity - state.velocity)
         wanted += self.acceleration * (setpoint.acceleration - state.acceleration)
         if setpoint.velocity != 0.0:

@@ -11,7 +11,7 @@ class SlidingMode(ApproachingLaw):
     """Sliding mode control of the third-order axis, M v' = F - F_friction(v) - F_load with F' from the valve:
 
         S  = (a_r - a) + omega (v_r - v)                  v_r: wanted velocity, of setpoint and error (see `Approach`)
-        F' = M (j_d + (lambda + omega) (a_r - a)) + dF_friction/dv a + M eta sat(S / Phi)
+        F' = M (j_d + (lambda + omega) (a_r - a)) + dF_friction/dv a + dF_load/dy v + M eta sat(S / Phi)
 
     The first terms keep S constant if the model is exact (equivalent control). The last term drives S to zero if the
     model's error is below the jerk eta; within |S| < Phi it is linear and does not chatter. Presliding is not modelled.
@@ -32,5 +32,6 @@ class SlidingMode(ApproachingLaw):
         surface = lag + self.speed_rate * (wanted.velocity - state.velocity)
         share = min(max(surface / self.layer, -1.0), 1.0)
         jerk = setpoint.jerk + (self.position_rate + self.speed_rate) * lag + self.reach * share
-        rate = self.machine.moving_mass * jerk + self.friction.running_slope(state.velocity) * state.acceleration
+        rate = state.moved.mass * jerk + self.friction.running_slope(state.velocity) * state.acceleration
+        rate += state.moved.slope * state.velocity
         return opening(self.machine, state.air, state.velocity, rate)

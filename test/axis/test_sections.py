@@ -2,9 +2,11 @@
 
 import pytest
 
-from pneumo_ros.axis.sections import flat, nested, of_axis, of_the_machine, settings_of
+from pneumo_ros.axis.sections import flat, nested, of_axis, of_the_machine, settings_of, with_arm
 from pneumo_ros.axis.simulator.machine import machine_of_axes
+from pneumo_ros.control.machine import ARM
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant import load_model
 
 FILE = "config/arm/pruning.yaml"
 GIVEN = {
@@ -46,6 +48,21 @@ def test_a_namespace_of_no_axis_is_told_what_to_type() -> None:
 def test_settings_and_machine_are_kept_apart() -> None:
     assert settings_of(GIVEN, "lift", OWN) == {"law": "cascade", "cascade.damping": 250.0}
     assert not {"law", "lift.cascade.damping"} & {*of_the_machine(GIVEN, ("lift", "reach"), OWN)}
+
+
+def test_an_arm_is_taken_from_its_urdf() -> None:
+    folder = "config/arm/"
+    given = {
+        "piston.stroke": 0.25, "effects": ["arm_load"], "arm_load.urdf": f"{folder}lever.urdf",
+        "arm_load.joint": "shoulder", "arm_load.between": ["base_pin", "rod_pin"], "arm_load.length": 0.52,
+    }  # fmt: skip
+    found = with_arm(given)
+    expected = load_model(f"{folder}lever.yaml").parameters
+    assert found["effects"] == ["arm_load"]
+    assert "arm_load.urdf" not in found
+    for name in ARM:
+        assert found.get(name, 0.0) == pytest.approx(expected[name])
+    assert with_arm(GIVEN) is GIVEN
 
 
 def test_parameters_change_axes_of_a_file() -> None:

@@ -21,8 +21,8 @@ class Capability:
 
     At a steady speed v the filling chamber takes A v p = c (p_s - p), the other gives A v p = d (p - p_atm), with the
     flows c = beta_fill R T atan(k_u u) and d likewise [m3/s] (plant: `arctan_flow` and `chambers` with p' = 0). The
-    share of choked flow is counted as linear flow; a machine without flow coefficients is limited by its pressures
-    alone.
+    share of choked flow is counted as linear flow; an arm counts where it is heaviest; a machine without flow
+    coefficients is limited by its pressures alone.
     """
 
     machine: Machine
@@ -47,11 +47,11 @@ class Capability:
     def resistance(self, speed: ArrayLike, side: float) -> Array:
         """Friction and load [N] against motion to `side` at `speed` [m/s] >= 0."""
         m, v = self.machine, np.asarray(speed, dtype=float)
-        return np.asarray(m.coulomb_friction + (m.viscous_friction + m.drag * v) * v + side * m.load)
+        return np.asarray(m.coulomb_friction + (m.viscous_friction + m.drag * v) * v + m.opposing(side))
 
     def breakaway(self, side: float) -> float:
         """Force [N] that starts a motion to `side`: static friction, and the load."""
-        return max(self.machine.static_friction, self.machine.coulomb_friction) + side * self.machine.load
+        return max(self.machine.static_friction, self.machine.coulomb_friction) + self.machine.opposing(side)
 
     def top_speed(self, side: float) -> float:
         """Largest steady speed [m/s] to `side`; 0 if the piston cannot move."""

@@ -28,7 +28,7 @@ from pneumo_ros.axis.controller.settings import (
 from pneumo_ros.axis.health import Health
 from pneumo_ros.axis.priority import take_priority
 from pneumo_ros.axis.roles import CONTROLLER
-from pneumo_ros.axis.sections import of_axis
+from pneumo_ros.axis.sections import of_axis, with_arm
 from pneumo_ros.records.contract import COMMAND, COMMAND_B, JOINT_STATES, PRESSURE_A, PRESSURE_B
 from pneumo_ros.ros import messages, readers
 from pneumo_ros.ros.controller.action import Following, FollowJointTrajectory
@@ -93,7 +93,8 @@ class Controller(AxisNode):
 
     def chosen(self, given: Values) -> Values:
         """Of a machine of several axes, the parameters of the one whose name ends the namespace."""
-        return of_axis(given, self.get_namespace(), {one.name for one in SETTINGS} - OF_THE_MACHINE, "controller")
+        own = {one.name for one in SETTINGS} - OF_THE_MACHINE
+        return with_arm(of_axis(given, self.get_namespace(), own, "controller"))
 
     def _listen(self) -> None:
         self._reader = readers.JointReader(self._joint)
