@@ -229,8 +229,7 @@ class Commissioning:
                 raise DataError(f"{name}: {done.reason}")
             self.tell(f"{name}: {done.reason}; tried again with {'smaller' if share < 1.0 else 'larger'} voltages")
             left = tried.trials[len(done.recordings) :]
-            dead = max(dead_zone(centred(self.known.model)))
-            tried = moves.smaller(replace(tried, trials=left), dead, share)
+            tried = moves.smaller(replace(tried, trials=left), dead_zone(centred(self.known.model)), share)
         if recordings:
             return Performed(tuple(recordings), seconds, done.reason)
         raise DataError(f"{name}: {done.reason}, after {AGAIN} trials with other voltages")

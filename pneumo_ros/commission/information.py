@@ -19,6 +19,7 @@ from pneumo_ros.diagnose.hypothesis import cluster_robust, family_scales, weight
 from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.identify.presliding import fit_presliding
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.estimates import Estimate
@@ -27,6 +28,7 @@ from pneumo_ros.shooting.refit import default_free, default_prior
 Array = NDArray[np.float64]
 MINUTE = 60.0  # s
 NORMAL = 1.96  # deviations of a 95 % interval
+OPENED = 0.5  # of the largest command, at which the valve opens at the start of a fit
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
     together = on_one_clock(runs)
     fitter = Fitter(model, together, candidates=())
     known = fitter.known(model)
-    found = fitter.refit(model)
+    found = fitter.refit(opened(model, together))
     what = told(fitter.train, found, known)
     deviations = dict(zip(known.names, (what.deviations() * known.prior).tolist(), strict=True))
     found, seen = _presliding(found, together)
@@ -113,6 +115,20 @@ def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
         for name in default_free(model)
     }
     return Knowledge(found, known, what, estimates)
+
+
+def opened(model: Model, runs: Sequence[Run]) -> Model:
+    """The model to begin a fit with: a valve that the commands of `runs` open to both sides.
+
+    Along commands within its dead zone a limit has no influence, so that no fit would find that it is narrower.
+    """
+    closed = closed_signal(model)
+    held = np.concatenate([run.held for run in runs]) - closed
+    most = {"dead_zone.right_limit": float(held.max()), "dead_zone.left_limit": float(-held.min())}
+    begin = {
+        name: OPENED * volts for name, volts in most.items() if 0.0 < OPENED * volts < model.parameters.get(name, 0.0)
+    }
+    return model.with_parameters(begin)
 
 
 def _estimate(before: Model, name: str, value: float, deviation: float) -> Estimate:

@@ -19,6 +19,7 @@ from pneumo_ros.plant.closed import centred, closed_signal
 from pneumo_ros.shooting.physical import physical
 
 Array = NDArray[np.float64]
+Dead = tuple[float, float]  # V from closed at which the valve begins to open, right and left, both positive
 
 SECONDS = 8.0  # of a move
 SLOW, MODERATE, FAST = 0.12, 0.5, 1.5  # V beyond the dead zone
@@ -108,7 +109,7 @@ def safe(programme: Programme, machines: Sequence[Model]) -> Programme | None:
 
     They keep clear of it if they can: one whose friction at rest is a multiple of that in motion cannot.
     """
-    dead = max(max(dead_zone(centred(one))) for one in machines)
+    dead = narrowest(machines)
     shares = [LESS**k for k in range(1 + int(np.log(FEWEST) / np.log(LESS)))]
     for clear, share in itertools.product((CLEAR, 1.0), shares):
         tried = smaller(programme, dead, share)
@@ -127,12 +128,19 @@ def _reaches_end(programme: Programme, machine: Model, clear: float) -> bool:
         return False
 
 
-def smaller(programme: Programme, dead: float, share: float) -> Programme:
-    """The programme with `share` of each voltage beyond the dead zone [V]."""
+def narrowest(machines: Sequence[Model]) -> Dead:
+    """The narrowest dead zone of all machines, each side by itself: less than that moves none of them."""
+    right, left = zip(*(dead_zone(centred(one)) for one in machines), strict=True)
+    return min(right), min(left)
+
+
+def smaller(programme: Programme, dead: Dead, share: float) -> Programme:
+    """The programme with `share` of each voltage beyond the dead zone."""
     if share == 1.0:
         return programme
     trials = tuple(replace(one, voltage=_less(one.voltage, dead, share)) for one in programme.trials)
-    right, left = (_less(Constant(one), dead, share).largest for one in (programme.return_right, programme.return_left))
+    right = _less(Constant(programme.return_right), dead, share).largest
+    left = _less(Constant(-programme.return_left), dead, share).largest
     return replace(programme, trials=trials, return_right=right, return_left=left)
 
 
@@ -141,10 +149,11 @@ def other(reason: str) -> float | None:
     return LESS if "end stop" in reason else MORE if "stays at" in reason else None
 
 
-def _less(voltage: Voltage, dead: float, share: float) -> Voltage:
+def _less(voltage: Voltage, dead: Dead, share: float) -> Voltage:
     def less(volts: float) -> float:
-        beyond = abs(volts) - dead
-        return volts if beyond <= 0.0 else float(np.copysign(round(dead + share * beyond, 4), volts))
+        edge = dead[0] if volts > 0.0 else dead[1]
+        beyond = abs(volts) - edge
+        return volts if beyond <= 0.0 else float(np.copysign(round(edge + share * beyond, 4), volts))
 
     if isinstance(voltage, Constant):
         return Constant(less(voltage.volts))

@@ -63,6 +63,29 @@ def test_ten_seconds_tell_the_wiring(sheet: Model, truth: Model, words: tuple[st
     assert job.moves[0].seconds < 15.0
 
 
+def test_ten_seconds_tell_a_dead_zone_narrower_than_the_data_sheet_says(sheet: Model, truth: Model) -> None:
+    """To the left the commands never leave the dead zone of the data sheet, 0.2 V: there a fit sees no slope."""
+    limits = {"dead_zone.right_limit": 0.3, "dead_zone.left_limit": 0.03}
+    job = Commissioning(sheet, SimulatedRig(truth.with_parameters(limits)).perform, sensors=())
+    job.wiring()
+    assert min(run.held.min() for run in job.runs) > -sheet["dead_zone.left_limit"]
+    for name, volts in limits.items():
+        assert job.known.model[name] == pytest.approx(volts, abs=0.02)
+        assert job.known.deviations[name] < 0.02
+
+
+def test_voltages_shrink_towards_the_dead_zone_of_their_side(sheet: Model) -> None:
+    narrow, wide = (
+        sheet.with_parameters({"dead_zone.right_limit": right, "dead_zone.left_limit": left})
+        for right, left in ((0.3, 0.05), (0.5, 0.1))
+    )
+    dead = moves.narrowest([wide, narrow])
+    made = moves.smaller(moves.static(sheet), dead, 0.01)
+    ends = [trial.voltage.largest for trial in made.trials]
+    assert dead == (0.3, 0.05)
+    assert ends == pytest.approx([0.3, 0.05] * 3, abs=0.02)
+
+
 def test_a_closed_signal_that_is_known_is_not_guessed(sheet: Model, truth: Model) -> None:
     """4.6 V is the middle of no usual range."""
     rig = SimulatedRig(truth, ("closed=4.6V", "reversed-voltage"))
