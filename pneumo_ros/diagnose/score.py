@@ -80,15 +80,26 @@ class Scoring:
         """The log evidence (2,) of a fit, its base parameters moved to where the training runs' evidence is largest.
 
         `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little
-        of what parameters explain, which the correlation of the discrepancy makes worth many nats.
+        of what parameters explain, which the correlation of the discrepancy makes worth many nats. The evidence of the
+        held-out runs is ln p(all) - ln p(training), base parameters at their best for each: what training hardly
+        determines, such as friction at a place that it passed once, must not decide there.
         """
+        first, fitted = self._climb(model, fits, fitted, parts=1)
+        whole, moved_on = self._climb(model, fits, fitted, parts=2)
+        known = strain(fitted[2] + fits[0].offset) - strain(moved_on[2] + fits[0].offset)
+        return np.array([first[0], float(whole.sum() - first[0]) + known]), fitted
+
+    def _climb(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> tuple[Array, Fit]:
+        """The log evidence (2,) of a fit whose base parameters are best for training runs, or for both `parts`."""
         found = self.evidence(model, *fitted[:2])
         for _ in range(STEPS):
-            step = self._step(model, fits[0], fitted)
+            step = self._step(model, fits, fitted, parts)
             tried = [moved(fitted, fits, share * step) for share in SHARES]
             each = [self.evidence(model, *one[:2]) for one in tried]
-            value = [float(e[0]) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)]
-            k, before = int(np.argmax(value)), float(found[0]) - strain(fitted[2] + fits[0].offset)
+            value = [
+                float(e[:parts].sum()) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)
+            ]
+            k, before = int(np.argmax(value)), float(found[:parts].sum()) - strain(fitted[2] + fits[0].offset)
             if not value[k] > before:
                 break
             found, fitted = each[k], tried[k]
@@ -96,12 +107,13 @@ class Scoring:
                 break
         return found, fitted
 
-    def _step(self, model: Model, base: BaseFit, fitted: Fit) -> Array:
-        """The step (free,) of base parameters by generalised least squares on the training runs."""
-        normal, slope = np.eye(len(base.names)), fitted[2] + base.offset
+    def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> Array:
+        """The step (free,) of base parameters by generalised least squares on the first `parts` of the runs."""
+        normal, slope = np.eye(len(fits[0].names)), fitted[2] + fits[0].offset
         for family in self._families(model, *fitted[:2]):
-            A, b = family.normal(base.slopes)
-            normal, slope = normal + A, slope + b
+            for part, fit in enumerate(fits[:parts]):
+                A, b = family.normal(part, fit.slopes)
+                normal, slope = normal + A, slope + b
         return np.asarray(-np.linalg.solve(normal, slope))
 
 
@@ -130,11 +142,11 @@ class _Family:
         """Log evidence (2,) at the discrepancy and the noise of the greatest likelihood."""
         return self._likelihood(*self._best())[1] if self.median else np.zeros(2)
 
-    def normal(self, slopes: Array) -> tuple[Array, Array]:
-        """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in training runs."""
+    def normal(self, part: int, slopes: Array) -> tuple[Array, Array]:
+        """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in a part of the runs."""
         matrix, gradient = np.zeros((slopes.shape[1], slopes.shape[1])), np.zeros(slopes.shape[1])
         at = self._best() if self.median else (0.0, 0.0, 1.0)
-        for rows, (residual, level, noise, seconds, run) in zip(self.rows[0], self.series[0], strict=True):
+        for rows, (residual, level, noise, seconds, run) in zip(self.rows[part], self.series[part], strict=True):
             both = np.column_stack([residual, slopes[rows] * noise[:, None]])
             _whiten(both, at[2] * level, seconds, run, at[0] * self.median, at[1], TAIL)
             A = both[:, 1:]

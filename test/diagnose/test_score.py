@@ -201,3 +201,22 @@ def test_base_parameters_are_fitted_with_the_correlation_of_what_no_model_has(se
     assert float(found[0]) > float(scoring.evidence(MODEL, *begin[:2])[0]) + 50.0
     assert train == pytest.approx(residual + slopes @ shift)
     assert held == pytest.approx(train)
+
+
+def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> None:
+    """As the friction at a place that training passed once: its value there is chance, and no error of the model."""
+    part, here = evidence(), np.zeros((N, 1))
+    once, often = here.copy(), here.copy()
+    once[:20], often[:4000] = 1.0, 1.0
+    train_fit, held_fit = (
+        BaseFit(MODEL, MODEL, ("a",), np.ones(1), np.zeros(1), part, noise(0), s) for s in (once, often)
+    )
+    scoring, fits = Scoring(part, part), (train_fit, held_fit)
+    without = noise(1), noise(2), np.zeros(1)
+    chance = without[0] - 0.5 * once[:, 0], without[1], np.zeros(1)  # an effect that meets the few windows by chance
+    alone, beside = (scoring.best(MODEL, fits, one)[0] for one in (without, chance))
+    plain = (
+        scoring.evidence(MODEL, *moved(chance, fits, np.array([0.5]))[:2])[1] - scoring.evidence(MODEL, *without[:2])[1]
+    )
+    assert plain < -30.0
+    assert abs(beside[1] - alone[1]) < 5.0
