@@ -68,13 +68,18 @@ class Scoring:
         self.parts = (train, held)
         self.names = tuple(dict.fromkeys([*train.names, *held.names]))
 
-    def evidence(self, model: Model, train: Array, held: Array) -> Array:
-        """Log evidence (2,) of the residuals over noise that `model` leaves in training and held-out runs."""
-        return np.asarray(np.sum([family.evidence() for family in self._families(model, train, held)], axis=0))
+    def evidence(self, model: Model, *residuals: Array) -> Array:
+        """Log evidence (parts,) of the residuals over noise that `model` leaves in training, and in held-out runs.
 
-    def _families(self, model: Model, train: Array, held: Array) -> list["_Family"]:
-        levels = [part.noise_of(model) for part in self.parts]
-        return [_Family(name, self.parts, (train, held), levels) for name in self.names]
+        Noise and discrepancy are those of the greatest likelihood in the runs whose residuals are given.
+        """
+        return np.asarray(np.sum([family.evidence() for family in self._families(model, residuals)], axis=0))
+
+    def _families(self, model: Model, residuals: Sequence[Array]) -> list["_Family"]:
+        """The families of the training runs' residuals, or of those and the held-out runs'."""
+        parts = self.parts[: len(residuals)]
+        levels = [part.noise_of(model) for part in parts]
+        return [_Family(name, parts, residuals, levels) for name in self.names]
 
     def best(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> tuple[Array, Fit]:
         """The log evidence (2,) of a fit, its base parameters moved to where the training runs' evidence is largest.
@@ -85,21 +90,19 @@ class Scoring:
         determines, such as friction at a place that it passed once, must not decide there.
         """
         first, fitted = self._climb(model, fits, fitted, parts=1)
-        whole, moved_on = self._climb(model, fits, fitted, parts=2)
-        known = strain(fitted[2] + fits[0].offset) - strain(moved_on[2] + fits[0].offset)
+        whole, further = self._climb(model, fits, fitted, parts=2)
+        known = strain(fitted[2] + fits[0].offset) - strain(further[2] + fits[0].offset)
         return np.array([first[0], float(whole.sum() - first[0]) + known]), fitted
 
     def _climb(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> tuple[Array, Fit]:
-        """The log evidence (2,) of a fit whose base parameters are best for training runs, or for both `parts`."""
-        found = self.evidence(model, *fitted[:2])
+        """The log evidence (parts,) of a fit whose base parameters are best for training runs, or for both `parts`."""
+        found = self.evidence(model, *fitted[:parts])
         for _ in range(STEPS):
             step = self._step(model, fits, fitted, parts)
             tried = [moved(fitted, fits, share * step) for share in SHARES]
-            each = [self.evidence(model, *one[:2]) for one in tried]
-            value = [
-                float(e[:parts].sum()) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)
-            ]
-            k, before = int(np.argmax(value)), float(found[:parts].sum()) - strain(fitted[2] + fits[0].offset)
+            each = [self.evidence(model, *one[:parts]) for one in tried]
+            value = [float(e.sum()) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)]
+            k, before = int(np.argmax(value)), float(found.sum()) - strain(fitted[2] + fits[0].offset)
             if not value[k] > before:
                 break
             found, fitted = each[k], tried[k]
@@ -110,7 +113,7 @@ class Scoring:
     def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> Array:
         """The step (free,) of base parameters by generalised least squares on the first `parts` of the runs."""
         normal, slope = np.eye(len(fits[0].names)), fitted[2] + fits[0].offset
-        for family in self._families(model, *fitted[:2]):
+        for family in self._families(model, fitted[:parts]):
             for part, fit in enumerate(fits[:parts]):
                 A, b = family.normal(part, fit.slopes)
                 normal, slope = normal + A, slope + b
@@ -118,7 +121,7 @@ class Scoring:
 
 
 class _Family:
-    """The windows of one family that a model leaves, in training and in held-out runs."""
+    """The windows of one family that a model leaves, in training runs, or in those and in held-out runs."""
 
     def __init__(
         self, name: str, parts: Sequence[Evidence], residuals: Sequence[Array], levels: Sequence[Array]
@@ -139,8 +142,8 @@ class _Family:
         self._known: dict[tuple[float, float, float], tuple[Array, Array]] = {}
 
     def evidence(self) -> Array:
-        """Log evidence (2,) at the discrepancy and the noise of the greatest likelihood."""
-        return self._likelihood(*self._best())[1] if self.median else np.zeros(2)
+        """Log evidence (parts,) at the discrepancy and the noise of the greatest likelihood."""
+        return self._likelihood(*self._best())[1] if self.median else np.zeros(len(self.series))
 
     def normal(self, part: int, slopes: Array) -> tuple[Array, Array]:
         """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in a part of the runs."""
@@ -182,10 +185,10 @@ class _Family:
         return float(self._likelihood(size, time, scale)[0].sum())
 
     def _likelihood(self, size: float, time: float, scale: float) -> tuple[Array, Array]:
-        """Log likelihood (2,) of training and held-out runs; and the same without what noise alone costs."""
+        """Log likelihood (parts,) of training and held-out runs; and the same without what noise alone costs."""
         at = size, time, scale
         if at not in self._known:
-            values = np.zeros((2, 2))
+            values = np.zeros((2, len(self.series)))
             for k, some in enumerate(self.series):
                 for residual, level, noise, seconds, run in some:
                     both = _log_likelihood(residual, scale * level, noise, seconds, run, size * self.median, time, TAIL)
