@@ -16,6 +16,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
+from pneumo_ros.plant.reach import acting
 from pneumo_ros.runs.run import SENSORS
 from pneumo_ros.shooting.bounded import bounded_minimum, finite
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
@@ -152,7 +153,16 @@ def _fits(model: Model, name: str, measured: Collection[str]) -> bool:
         larger = model.with_effects([*model.effects, name])
     except PneumoError:
         return False
-    return set(larger.inputs) <= set(measured)
+    return set(larger.inputs) <= set(measured) and name in acting(larger.composition.effects, _shown(larger))
+
+
+def _shown(model: Model) -> tuple[str, ...]:
+    """What recordings show of a model: its frame, the readings of its sensors, and the force of a breakaway.
+
+    An effect on which none of these depends changes nothing here, such as a drop of a supply that fills no chamber.
+    """
+    readings = (name for name in model.composition.observed if name.endswith("_measured"))
+    return (*model.states[: model.frame], *readings, "static_level")
 
 
 def everything(model: Model, found: dict[str, tuple[Coordinate, ...]]) -> Model:

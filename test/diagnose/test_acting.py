@@ -1,0 +1,19 @@
+"""Only effects that change something which recordings show are tried on a machine."""
+
+from pneumo_ros.diagnose.hypothesis import missing
+from pneumo_ros.plant import load_model
+
+
+def test_no_effect_of_a_supply_is_tried_without_a_valve() -> None:
+    found = missing(load_model("emps"), ("U",))
+    assert "asymmetric_viscous_friction" in found
+    assert "supply_pressure_droop" not in found
+
+
+def test_a_machine_with_a_valve_is_asked_for_its_supply() -> None:
+    assert "supply_pressure_droop" in missing(load_model("axis"), ("U",))
+
+
+def test_the_inertia_of_a_small_servo_is_allowed() -> None:
+    small = load_model("emps").with_parameters({"piston.mass": 6e-5})  # kg m2
+    assert small["piston.mass"] == 6e-5
