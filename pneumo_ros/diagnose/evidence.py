@@ -12,7 +12,6 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_coeffs
 
 from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
@@ -21,6 +20,7 @@ from pneumo_ros.diagnose.follow import Followed, Frame, follow_each, frame_of, n
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, moving_mass
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
 
 Array = NDArray[np.float64]
@@ -132,7 +132,7 @@ class RunEvidence:
         last = self.families[-1]
         self.breakaways = last.breakaways
         width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)
-        self.kernel = savgol_coeffs(2 * reach + 1, 2)  # a parabola over +-8 ms
+        self.kernel = weights(2 * reach + 1, 2)  # a parabola over +-8 ms
         self.spans = [
             np.arange(max(b.index - width - 2 * reach, 0), min(b.index + 2 * reach + 1, len(run)))
             for b in self.breakaways

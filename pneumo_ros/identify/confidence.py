@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit  # Student's t, without the slow import of scipy.stats
 
 Array = NDArray[np.float64]
 
@@ -31,10 +31,10 @@ def half_widths(residual: Array, jacobian: Array, weight: Array, groups: Sequenc
     variance = max(float(np.sum(weight * residual**2) / freedom), 1.0)
     normal = jacobian.T @ (weight[:, None] * jacobian)
     bread, seen = _inverse(normal, normal)
-    half = student.ppf(0.975, freedom) * np.sqrt(variance * np.diag(bread))
+    half = stdtrit(freedom, 0.975) * np.sqrt(variance * np.diag(bread))
     robust, runs = _jackknife(jacobian, weight, residual, np.array(groups))
     if runs >= max(_FEW_GROUPS, jacobian.shape[1] + 2):
-        half = np.maximum(half, student.ppf(0.975, runs - 1) * robust)
+        half = np.maximum(half, stdtrit(runs - 1, 0.975) * robust)
     sigma = np.where(seen, np.sqrt(np.diag(bread)), np.nan)
     return np.where(seen, half, np.inf), bread / np.outer(sigma, sigma)
 

@@ -6,9 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_coeffs, savgol_filter
 
 from pneumo_ros.plant.actuator import Chamber
+from pneumo_ros.runs.local_polynomial import along, weights
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def smooth(signal: Array, sample_time: float, half_width: float, order: int, der
     signal (n,), returns (n,), in units of the signal per s**derivative. Near the ends the last full window is used.
     """
     width = _window(len(signal), sample_time, half_width, order)
-    return np.asarray(savgol_filter(signal, width, min(order, width - 1), deriv=derivative, delta=sample_time))
+    return along(signal, width, min(order, width - 1), derivative, sample_time)
 
 
 def noise_gain(sample_time: float, half_width: float, order: int, derivative: int = 0) -> float:
@@ -62,4 +62,4 @@ def _window(samples: int, sample_time: float, half_width: float, order: int) -> 
 
 @lru_cache(maxsize=64)
 def _gain(width: int, sample_time: float, order: int, derivative: int) -> float:
-    return float(np.linalg.norm(savgol_coeffs(width, order, deriv=derivative, delta=sample_time)))
+    return float(np.linalg.norm(weights(width, order, derivative, sample_time)))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit  # Student's t, without the slow import of scipy.stats
 
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.problem import Unknowns
@@ -77,7 +77,7 @@ def estimates(unknowns: Unknowns, solution: Solution) -> tuple[dict[str, Estimat
 def _small_sample(segments: int) -> float:
     """Ratio of Student's interval for few segments to the normal interval of their resampling."""
     freedom = max(segments - 1, 1)
-    return float(student.ppf(0.975, freedom) / 1.96 * np.sqrt(segments / freedom))
+    return float(stdtrit(freedom, 0.975) / 1.96 * np.sqrt(segments / freedom))
 
 
 def _bootstrap(matrices: Array, gradients: Array) -> Array:
