@@ -4,8 +4,13 @@ A test that hangs fails after ten minutes, the longest files of tests begin firs
 seconds of every folder.
 """
 
-import faulthandler
 import os
+
+# Before anything imports numpy, here and in the processes that tests start: threads of BLAS wait for each other busily,
+# and take a quarter of the processor time from the tests beside them.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import faulthandler
 import signal
 import sys
 import tempfile
