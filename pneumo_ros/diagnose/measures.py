@@ -70,8 +70,10 @@ def texture(evidence: Evidence) -> dict[str, float]:
     """By equation of forces, the mean square over noise of a texture of friction, as large as does not matter."""
     found: dict[str, list[float]] = {}
     for k, name in enumerate(evidence.names):
-        if equation_of(name) in FORCES:
-            noise = evidence.noise[evidence.family == k]
+        if equation_of(name) not in FORCES:
+            continue
+        noise = evidence.noise[evidence.family == k]
+        if noise.size:  # recordings without a breakaway have no row of its force
             found.setdefault(equation_of(name), []).append(
                 float(np.median((MATERIAL_FORCE * evidence.drive / noise) ** 2))
             )

@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.measures import FEWEST_WINDOWS, MATERIAL_FORCE, MOST_BLOCK, acting, explained, gains, together
+from pneumo_ros.diagnose.measures import (
+    FEWEST_WINDOWS,
+    MATERIAL_FORCE,
+    MOST_BLOCK,
+    acting,
+    explained,
+    gains,
+    texture,
+    together,
+)
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
 NOISE = np.random.default_rng(0).normal(size=N)
@@ -78,3 +87,13 @@ def test_what_is_no_larger_than_a_texture_need_not_be_removed() -> None:
     machine = breakaways(20, drive=2.0 / MATERIAL_FORCE)
     assert explained(machine, before, after, everywhere) < 0.25
     assert explained(machine, before, after, everywhere, textured=True) > 1.0
+
+
+def test_a_kind_of_equation_without_a_row_has_no_texture() -> None:
+    """Recordings without a breakaway: a median of nothing is no number, and warns."""
+    family, noise = np.zeros(20, dtype=np.int64), np.ones(20)
+    names = ("momentum 200 ms", "breakaway")
+    evidence = cast(Evidence, SimpleNamespace(names=names, family=family, noise=noise, drive=1.0))
+    found = texture(evidence)
+    assert set(found) == {"momentum"}
+    assert np.isfinite(found["momentum"])
