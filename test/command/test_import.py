@@ -22,9 +22,9 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_guessed_map_imports_its_table(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "run.csv", "--guess", "--map", "new.yaml", "--json", "guess.json"]) == 0
-    out = capsys.readouterr().out
+    out, err = capsys.readouterr()
     assert "run.csv: 400 rows, 6 columns" in out
-    assert "import run.csv --map new.yaml --out BAG" in out
+    assert "import run.csv --map new.yaml --out bag\n" in err
     told = json.loads((place / "guess.json").read_text())["guess"]
     assert told["signals"]["position"]["column"] == "x (mm)"
     assert main(["import", "run.csv", "--map", "new.yaml", "--out", "bag", "--json", "import.json"]) == 0

@@ -16,6 +16,7 @@ LINES = (
     ("parts", "new"),
     ("new --bore 25 --rod 10 --stroke 200 --valve-flow 700l/min --supply 6barg --mass 2 --out new.yaml", "simulate"),
     ("simulate --input sine:3,0.9 --seconds 2 --out moved", "compare"),
+    ("import run.csv --guess --map guessed.yaml", "import"),
     ("import run.csv --map map.yaml --out imported", "view"),
     ("view runs/one", "compare"),
     ("compare runs", "diagnose"),

@@ -14,11 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from pneumo_ros.command.arguments import add_output
-from pneumo_ros.command.console import Console, program
+from pneumo_ros.command.console import Console
 from pneumo_ros.command.importing_text import guess_json, guess_text, imported_text, summary
 from pneumo_ros.command.targets import targets
 from pneumo_ros.errors import PneumoError, UsageError
 from pneumo_ros.files import check_writable, write_whole
+
+NAMED = 4  # tables that the next command line names; of more, the first one
 
 EXAMPLES = (
     "pneumo import run.csv --guess --map map.yaml      # then look at map.yaml",
@@ -79,12 +81,11 @@ def _guess(options: argparse.Namespace, console: Console) -> int:
     found = guess(table)
     write_whole(path, map_text(found, table.path.name))
     console.say(f"{table.path.name}: {len(table)} rows, {len(table.columns)} columns\n{guess_text(found)}")
-    named = shlex.quote(options.tables[0]) if len(options.tables) == 1 else "TABLE..."
-    then = "complete it" if not found.complete else "check it"
-    console.say(
-        f"Map written to {path}; {then}, then type: {program()} import {named} --map {shlex.quote(str(path))} --out BAG"
-    )
+    console.say(f"Map written to {path}; {'check' if found.complete else 'complete'} it")
     console.json({"schema_version": 1, "map": path, "table": table.path, "guess": guess_json(found)})
+    few = len(options.tables) <= NAMED
+    named = shlex.join(options.tables) if few else f"{shlex.quote(options.tables[0])} TABLE..."
+    console.next(f"import {named} --map {shlex.quote(str(path))} --out {'bag' if len(options.tables) == 1 else 'bags'}")
     return 0 if found.complete else 1
 
 
