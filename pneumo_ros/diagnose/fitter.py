@@ -108,10 +108,10 @@ class Fitter:
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
             return model
-        least, sizes = self._score(model) - AS_MUCH, [c for c in own if c.is_size and model[c.name] != c.neutral]
+        least, sizes = self.score(model) - AS_MUCH, [c for c in own if c.is_size and model[c.name] != c.neutral]
         for size in sorted(sizes, key=lambda c: model.specification(c.name).default != c.neutral):
             simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
-            if self._score(simpler) > least:
+            if self.score(simpler) > least:
                 return simpler
         return model
 
@@ -123,7 +123,7 @@ class Fitter:
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
         return self._at_best(model) - self.likelihood(larger, values)
 
-    def _score(self, model: Model) -> float:
+    def score(self, model: Model) -> float:
         """Log evidence of all recordings and of the priors of the parameters."""
         parts = (self.train, self.held) if self._held_runs else (self.train, self.train)
         found = Scoring(*parts).evidence(model, *(part.residual(model) for part in parts))

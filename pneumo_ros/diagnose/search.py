@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.blas import on_one_thread
-from pneumo_ros.diagnose.basefit import unaided
+from pneumo_ros.diagnose.basefit import strain, unaided
 from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
@@ -28,7 +28,7 @@ from pneumo_ros.diagnose.prediction import (
 )
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
-from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, screen, shortlist
+from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
 from pneumo_ros.diagnose.steps import Found, Step, without
@@ -256,13 +256,23 @@ class Search:
 
     def _rank(self, model: Model) -> Ranking:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
-        base, held = self.fitter.fits(model)
+        base, held = self.fitter.fits(self.unstrained(model))
         nothing = unaided(base)
         held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
         hypotheses, screened = self.hypotheses(base)
         candidates = self.judged(base, held, nothing, hypotheses, screened)
         quiet = force(self.held, held.residual, np.zeros(len(self.held))) <= TEXTURE * self.held.drive
         return Ranking(base, held, candidates, screened, quiet)
+
+    def unstrained(self, model: Model) -> Model:
+        """The model, or refitted to the equations if its parameters are far from what is known and the score is larger.
+
+        Breakaways may have moved them; the slopes by which candidates are compared do not reach so far.
+        """
+        if strain(self.fitter.known(model).offset(model)) < STRAINED:
+            return model
+        new = self.fitter.refit(model)
+        return new if self.fitter.score(new) > self.fitter.score(model) else model
 
     def hypotheses(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
