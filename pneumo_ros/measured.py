@@ -23,6 +23,7 @@ class Measured:
     dimensions: tuple[str, ...]
     shown: tuple[str, float]
     flips: bool = False
+    held: bool = False  # whether a value lasts until the next one, as a command does
 
 
 MEASURED = (
@@ -37,6 +38,22 @@ MEASURED = (
     Measured(
         "flow_a", "chamber_a/flow", "kg/s", "measured mass flow into chamber a", "metered_flow_a",
         ("mass flow",), ("g/s", 1e3),
+    ),
+    Measured(
+        "reference", "position/reference", "m", "wanted position, of the loop that moves the machine", "reference",
+        ("length", "angle"), ("mm", 1e3), flips=True, held=True,
+    ),
+    Measured(
+        "loop_gain", "loop/gain", "1/m", "gain of the position loop, share of full voltage over error", "loop_gain",
+        ("ratio",), ("1/m", 1.0), held=True,
+    ),
+    Measured(
+        "supply_voltage", "supply/voltage", "V", "voltage at the driver of a motor", "measured_voltage",
+        ("voltage",), ("V", 1.0),
+    ),
+    Measured(
+        "motor_on", "motor/on", "1", "whether the driver of a motor is on, 1 or 0", "motor_on",
+        ("ratio",), ("", 1.0), held=True,
     ),
 )  # fmt: skip
 

@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 from pneumo_ros.compare.wording import SIGNALS
@@ -21,7 +22,9 @@ from pneumo_ros.diagnose.diagnosis import diagnose
 from pneumo_ros.diagnose.outcome import Outcome
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.reading.read import read_runs
+from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.windows import free_run
 
 HERE = Path(__file__).parent
 
@@ -44,16 +47,17 @@ def row(name: str, case: dict[str, Any], folder: Path) -> str:
     train, held = (recordings(folder, case[role], model) for role in ("fit", "judge"))
     if not train or not held:
         return f"{name}: not all of its recordings are in {folder}"
-    begin = time.perf_counter()
+    model, begin = measuring(model, [*train, *held]), time.process_time()
     found = diagnose(model, train, held, horizon=case["horizon"])
-    seconds = time.perf_counter() - begin
+    seconds = time.process_time() - begin
     course = " -> ".join(f"{error:.3g}" for _, error in found.waterfall)
     return "\n".join(
         [
-            f"{name}: {len(train)} recordings fitted, {len(held)} held out, {seconds:.0f} s",
+            f"{name}: {len(train)} recordings fitted, {len(held)} held out, {seconds:.0f} s of processor time",
             f"  found      {added(found)}; verdict {found.verdict}",
             f"  predicted  over {case['horizon']:g} s, noise floors: {course}",
             f"  simulated  from the first sample alone: {alone(found)}",
+            f"  mean size  of that error over all of them: {size_of_all(found, held)}",
             f"  published  {case['published']}",
         ]
     )
@@ -78,12 +82,29 @@ def alone(found: Outcome) -> str:
     return "; ".join(parts)
 
 
-def main(bags: Path) -> int:
-    """Print all rows; 1 where a machine's recordings are missing."""
+def size_of_all(found: Outcome, held: list[Run]) -> str:
+    """By signal, the mean absolute error of whole simulations of all recordings, before and after."""
+    whole = [[free_run(model, run).errors for run in held] for model in (found.base, found.model)]
+    parts = []
+    for name in whole[0][0]:
+        words, unit, factor = SIGNALS[name]
+        before, after = (factor * np.mean([np.nanmean(np.abs(one[name])) for one in every]) for every in whole)
+        parts.append(f"{words} {before:.3g} -> {after:.3g} {unit}")
+    return "; ".join(parts)
+
+
+def folder_of(name: str, case: dict[str, Any]) -> str:
+    """The folder of a case's recordings: of its name, or of another that several cases share."""
+    return str(case.get("recordings", name))
+
+
+def main(bags: Path, only: list[str]) -> int:
+    """Print all rows, or `only` those; 2 where a machine's recordings are missing."""
     cases = yaml.safe_load((HERE / "table" / "cases.yaml").read_text(encoding="utf-8"))
-    there = {name: case for name, case in cases.items() if (bags / name).is_dir()}
+    cases = {name: case for name, case in cases.items() if not only or name in only}
+    there = {name: case for name, case in cases.items() if (bags / folder_of(name, case)).is_dir()}
     for name, case in there.items():
-        print(row(name, case, bags / name), flush=True)
+        print(row(name, case, bags / folder_of(name, case)), flush=True)
     absent = ", ".join(name for name in cases if name not in there)
     if absent:
         print(f"no folder in {bags} for: {absent}")
@@ -92,8 +113,9 @@ def main(bags: Path) -> int:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", default=[], help="names of machines")
     parser.add_argument("bags", nargs="?", default=os.environ.get("PNEUMO_REAL_BAGS"), help="default: PNEUMO_REAL_BAGS")
     options = parser.parse_args()
     if options.bags is None:
         parser.error("name the folder of the recordings, or set PNEUMO_REAL_BAGS")
-    sys.exit(main(Path(options.bags)))
+    sys.exit(main(Path(options.bags), options.only))

@@ -91,10 +91,7 @@ def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model
             f"{'force' if by_force else 'pressures'}; record valve/command to judge valve and chambers as well"
         )
     elif found.imposed == model.imposed and found.inputs != model.inputs:
-        computed = any(inputs.IN_PLACE[0] in run.computed for run in runs)
-        taken = "measured, in place of" if not computed else "computed from what all axes draw, in place of"
-        taken = taken if len(found.inputs) > len(model.inputs) else "not measured in every run; it is"
-        console.note(f"The supply pressure is {taken} air.supply_pressure")
+        console.note(inputs.in_place(model, found, runs))
     console.note(inputs.judged(found, runs))
     return found
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.equations.equations import drive_along
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.runs.run import Run
@@ -38,7 +39,7 @@ def along(model: Model, run: Run) -> Along:
         run=run,
         velocity=states[:, 1],
         rest_below=max(_SLOWEST, _DEVIATIONS * spread),
-        input=np.append(run.held, run.held[-1]),
+        input=drive_along(model, run, states) if model.force_driven else np.append(run.held, run.held[-1]),
         seen=model.outputs(states, run.sampled(model.inputs), sample_time=run.sample_time),
         reach=0.5 * model["piston.stroke"],
         chambers=model.chambers,

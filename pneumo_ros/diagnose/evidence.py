@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
-from pneumo_ros.diagnose.follow import Followed, Frame, follow_each, frame_of, noisier
+from pneumo_ros.diagnose.follow import Followed, Frame, follow, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import REST
-from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, moving_mass
+from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, drive_along, moving_mass
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
@@ -128,7 +128,8 @@ class RunEvidence:
         self.run, self.frame = run, frame_of(run, model.chambers)
         self.families = families(model, self.frame, index)
         self.held = np.append(run.held, run.held[-1])
-        self.drive = self.held if model.force_driven else model.effort(self.frame.states)
+        along = follow(model, self.frame)[0] if model.self_driven else self.frame.states
+        self.drive = drive_along(model, run, along)
         last = self.families[-1]
         self.breakaways = last.breakaways
         width, reach = max(round(REST / run.sample_time), 2), max(round(0.008 / run.sample_time), 2)

@@ -24,9 +24,9 @@ SEEN = 5.0  # deviations from zero: a smaller delay is ignored
 def lateness(model: Model, train: Sequence[Run]) -> float:
     """Delay of the positions against the force [s], below one sample; 0 where none is significant.
 
-    For force-driven axes only: a valve's command acts from the time it was sent.
+    For axes that a measured force drives: a command acts from the time it was sent, and a goal too.
     """
-    if not model.force_driven or EFFECT in model.effects:
+    if not model.force_driven or model.self_driven or EFFECT in model.effects:
         return 0.0
     fitter = Fitter(model, train, candidates=[EFFECT])
     begin = model.with_effects([*model.effects, EFFECT], {f"{EFFECT}.delay": 0.5 * train[0].sample_time})

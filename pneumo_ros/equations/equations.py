@@ -43,14 +43,20 @@ def moving_mass(model: Model) -> float:
     return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
 
 
+def drive_along(model: Model, run: Run, states: Array) -> Array:
+    """Drive force (n,) [N] along states (n, states) of a run: measured, by the chambers, or as effects compute it."""
+    if model.self_driven:
+        return model.outputs(states, run.sampled(model.inputs), sample_time=run.sample_time)["drive"]
+    return np.append(run.held, run.held[-1]) if model.force_driven else model.effort(states)
+
+
 class Momentum:
     """The momentum equation of a model along states (n, states) of a run; values in N."""
 
     def __init__(self, model: Model, run: Run, states: Array) -> None:
         self.model, self.run = model, run
         self._steep = sensitivity(model, run, states, model.states.index("v"), 1e-3)[:, model.states.index("v")]
-        held = np.append(run.held, run.held[-1])
-        self._drive = held if model.force_driven else model.effort(states)
+        self._drive = drive_along(model, run, states)
 
     @staticmethod
     def value(bump: Bump, mass: Array, position: Array, acceleration: Array) -> Array:
@@ -62,7 +68,7 @@ class Momentum:
         model, run, noise = self.model, self.run, self.run.noise
         ones = np.ones(len(run))
         parts = [self.noise_by_position(bump)]
-        if model.force_driven:
+        if model.force_driven and not model.self_driven:
             parts.append(noise_level(run.force) * bump.noise([(bump.phi, ones)]))
         else:
             for chamber in model.chambers:

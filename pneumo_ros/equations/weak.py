@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.bump import Bump
-from pneumo_ros.equations.equations import Balance, Momentum, centred, measured_throughout, moving_mass
+from pneumo_ros.equations.equations import Balance, Momentum, centred, drive_along, measured_throughout, moving_mass
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
@@ -66,7 +66,7 @@ def force_error(model: Model, run: Run) -> float:
     bump = Bump.of(FORCE_WINDOW, run.sample_time)
     states, claimed = _along(model, run)
     mass = moving_mass(model)
-    drive = np.append(run.held, run.held[-1]) if model.force_driven else model.outputs(states)["drive"]
+    drive = drive_along(model, run, states) if model.force_driven else model.outputs(states)["drive"]
     error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
     inside = measured_throughout(run, bump)
     return float(100.0 * np.linalg.norm(error[inside]) / np.linalg.norm(bump.apply(bump.phi, drive)[inside]))

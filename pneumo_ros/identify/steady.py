@@ -134,7 +134,7 @@ def _noise(model: Model, run: Run, width: int) -> tuple[float, float, float]:
     parts = [moving_mass(model) * noise["position_m"] * np.sqrt(720.0 / width) / span**2]  # of a parabola's curvature
     for chamber in model.chambers:
         parts.append(model[chamber.area] * noise[chamber.signal] * np.sqrt(1.2 / width))
-    if model.force_driven:
+    if model.force_driven and not model.self_driven:
         parts.append(noise_level(run.force) * np.sqrt(1.0 / width))
     slope = np.sqrt(12.0 / width) / span  # of a line through white noise of unit size
     steepest = max((noise[chamber.signal] for chamber in model.chambers), default=np.nan)

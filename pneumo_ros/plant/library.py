@@ -17,7 +17,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.actuator import Actuator
 from pneumo_ros.plant.effect import Effect
 
-_ROOMS = ("valve", "line", "chamber", "piston", "friction", "sensor")
+_ROOMS = ("valve", "line", "chamber", "motor", "piston", "friction", "sensor")
 
 
 def _modules(room: str) -> dict[str, str]:

@@ -118,6 +118,12 @@ class Model:
         """Whether the input is a measured force [N] instead of a valve voltage: a machine file without actuator."""
         return self.actuator is None
 
+    @property
+    def self_driven(self) -> bool:
+        """Whether effects compute the drive of a machine without chambers, as a motor does in its loop: U is unused."""
+        functions = (f for effect in self.composition.effects for f in effect.functions.values())
+        return self.force_driven and any("drive" in function.writes for function in functions)
+
     def require_two_chambers(self, who: str) -> None:
         """Raise UsageError, in which `who` needs them, unless the piston has air on both sides."""
         if len(self.chambers) != len(SIDES):

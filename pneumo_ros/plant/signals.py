@@ -76,6 +76,19 @@ _TABLE = (
     Signal("p_atm", "single", "Pa", "atmospheric_pressure", "pressure of the atmosphere, absolute", "101325.0"),
     Signal("valve_flow_a", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber a"),
     Signal("valve_flow_b", "sum", "kg/s", "0.0", "mass flow from the valve into the line of chamber b"),
+    # position loop and motor
+    Signal("position_gain", "single", "1/m", "proportional_gain", "gain of the position loop", measured="loop_gain"),
+    Signal("duty", "single", "1", "0.0", "share of its voltage that the driver gives the motor, -1 to 1"),
+    Signal("voltage_drop", "sum", "V", "0.0", "voltage lost between source and driver"),
+    Signal(
+        "driver_voltage",
+        "single",
+        "V",
+        "source_voltage - voltage_drop",
+        "voltage at the driver of the motor",
+        measured="measured_voltage - voltage_drop",
+    ),
+    Signal("powered", "single", "1", "1.0", "whether the driver is on, 1 or 0", measured="motor_on"),
     # lines and chambers
     Signal("port_flow_a", "single", "kg/s", "valve_flow_a", "mass flow through port a into chamber a"),
     Signal("port_flow_b", "single", "kg/s", "valve_flow_b", "mass flow through port b into chamber b"),

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.breakaway import holding_force
+from pneumo_ros.equations.equations import drive_along
+from pneumo_ros.equations.guess import resting_states
 from pneumo_ros.plant import Model
 from pneumo_ros.reading.steady import check_steady, travel
 from pneumo_ros.runs.noise import noise_level, resolution
@@ -117,7 +119,7 @@ def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
 def _force(model: Model, run: Run) -> Array:
     """Force that friction holds while the piston rests (n,) [N]."""
     if model.force_driven:
-        return np.append(run.held, run.held[-1])
+        return drive_along(model, run, resting_states(model, run))
     return holding_force(model, run)
 
 

@@ -48,7 +48,7 @@ def check_sealed(run: Run) -> None:
 
 def imposed_note(model: Model, run: Run) -> Iterator[str]:
     """A note where the measured force leads the model's piston far away from the measured motion."""
-    if run.imposed or run.by_pressures or not model.force_driven:
+    if run.imposed or run.by_pressures or model.self_driven or not model.force_driven:
         return
     samples = min(round(_WINDOW / run.sample_time), len(run) - 1)
     starts = np.arange(0, len(run) - samples, samples)

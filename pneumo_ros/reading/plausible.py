@@ -94,6 +94,8 @@ def _mistake(model: Model, run: Run) -> str | None:
 
 def _mistakes(model: Model, run: Run) -> list[_Mistake]:
     """Possible mistakes in a recording of this kind of axis."""
+    if model.self_driven:
+        return []  # gain, goal and position go together: none of them is wrong by itself
     if model.force_driven:
         return _of_force(model, run)
     rise = model["air.atmospheric_pressure"]

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import PLAIN
 from pneumo_ros.records import checks, contract
 from pneumo_ros.records.namespaces import NEEDED
 from pneumo_ros.records.recording import Array, Recording, imposed, with_imposed
@@ -62,7 +63,7 @@ def read_recording(
         description=description,
         warnings=tuple(signals.warnings),
         load_cell=_sampled(load_cell, joints, "effort"),
-        further={name: resampled(one, "data", joints.stamp) for name, one in signals.further().items()},
+        further={name: _further(name, one, joints) for name, one in signals.further().items()},
         command_b_time=command_b_time,
         command_b=command_b,
     )
@@ -74,6 +75,8 @@ def _require(signals: Signals, commands: Series | None, *pressures: Series | Non
     names = (contract.PRESSURE_A, contract.PRESSURE_B)
     absent = [name for name, series in zip(names, pressures, strict=True) if series is None]
     renamed = bool(signals.like(contract.COMMAND if commands is None else contract.PRESSURE_A))
+    if commands is None and not renamed and signals.has(contract.REFERENCE):
+        return  # whether the machine file has the loop that the goal drives is asked later
     if commands is None and not driven and (len(absent) == 2 or renamed):
         absent, lacking = [contract.COMMAND], f"{contract.COMMAND} or the effort in {contract.JOINT_STATES}"
     elif commands is not None and (len(absent) == 2 or (absent and renamed)):
@@ -140,6 +143,14 @@ def _optional(signals: Signals, joints: Series, name: str) -> Array | None:
 def _sampled(series: Series | None, joints: Series, name: str) -> Array | None:
     """Value `name` of a sensor at the times of the joint states."""
     return None if series is None else resampled(series, name, joints.stamp)
+
+
+def _further(name: str, series: Series, joints: Series) -> Array:
+    """A plain signal of `measured` at the times of the joint states, held or linear between its samples."""
+    if not PLAIN[name].held:
+        return resampled(series, "data", joints.stamp)
+    origin = int(joints.stamp[0])
+    return held(seconds(joints.stamp, origin), seconds(series.stamp, origin), series.values["data"])
 
 
 def _zero_order_hold(

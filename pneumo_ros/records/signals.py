@@ -58,6 +58,10 @@ class Signals:
         """Names of the axis' topics, as recorded."""
         return sorted(data.name for data in self._topics.values())
 
+    def has(self, name: str) -> bool:
+        """Whether the axis has the contract's topic `name`."""
+        return name in self._topics
+
     def like(self, name: str) -> list[str]:
         """Recorded topics with unknown names that have the type of the contract's topic `name`."""
         return sorted(t for t, kind in self._types.items() if kind == contract.TYPES[name] and not contract.split(t))

@@ -8,7 +8,13 @@ from pneumo_ros.plant.mechanical import mechanical, pneumatic
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import SENSORS, Run
 
-IN_PLACE = ("measured_supply",)  # inputs that take the place of a constant
+SUPPLY = "measured_supply"
+IN_PLACE = {  # inputs that take the place of a constant: what they are, and the constant
+    SUPPLY: ("supply pressure", "air.supply_pressure"),
+    "loop_gain": ("gain of the position loop", "position_loop.proportional_gain"),
+    "measured_voltage": ("voltage of the motor's source", "dc_motor.source_voltage"),
+    "motor_on": ("power of the motor", "power throughout"),
+}
 
 
 def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
@@ -39,6 +45,19 @@ def measuring(model: Model, runs: Sequence[Run]) -> Model:
             )
         model = pneumatic(model)
     return model.measuring([name for name in IN_PLACE if name in measured_inputs(runs)])
+
+
+def in_place(model: Model, found: Model, runs: Sequence[Run]) -> str:
+    """Which constants of `model` a measured signal replaces in `found`, and which no longer; one line."""
+    said = []
+    for name, (words, constant) in IN_PLACE.items():
+        if name in {*model.inputs} ^ {*found.inputs}:
+            taken = "measured, in place of"
+            if any(name in run.computed for run in runs):
+                taken = "computed from what all axes draw, in place of"
+            taken = taken if name in found.inputs else "not measured in every run; it is"
+            said.append(f"The {words} is {taken} {constant}")
+    return "; ".join(said)
 
 
 def check_inputs(model: Model, run: Run) -> None:
@@ -75,12 +94,12 @@ def judged(model: Model, runs: Sequence[Run]) -> str:
     if model.imposed and not model.force_driven:
         lacking.append(f"momentum ({_adding_momentum(model, assumed)} would add it)")
     else:
-        found.append(f"momentum{_open_side(runs)}")
-    if model.force_driven:
+        found.append(f"momentum{', in its position loop' if model.self_driven else _open_side(runs)}")
+    if model.force_driven and not model.self_driven:
         some = all(run.pressure_a is not None or run.pressure_b is not None or "p_a" in run.further for run in runs)
         needed = "valve/command" if some else "valve/command and both chamber pressures"
         lacking.append(f"chambers and valve ({needed}, and a machine file with chambers, would add them)")
-    else:
+    elif not model.force_driven:
         driven = ", driven by the position" if model.imposed else ""
         found += [f"chamber {one.side}{driven}" for one in model.chambers if one.side not in assumed]
         lacking += [f"chamber {one} (chamber_{one}/pressure would add it)" for one in assumed]
@@ -93,8 +112,7 @@ def judged(model: Model, runs: Sequence[Run]) -> str:
 
 
 def _supply_unmeasured(runs: Sequence[Run]) -> bool:
-    name = IN_PLACE[0]
-    return name not in measured_inputs(runs) or any(name in run.computed for run in runs)
+    return SUPPLY not in measured_inputs(runs) or any(SUPPLY in run.computed for run in runs)
 
 
 def _adding_momentum(model: Model, assumed: Sequence[str]) -> str:

@@ -178,6 +178,7 @@ def make_run(
     atmosphere: float = ATMOSPHERE,
     chambers: Sequence[Chamber] | None = None,
     commanded: bool = True,
+    self_driven: bool = False,
 ) -> Run:
     """Lay a recording on a uniform grid of its median sample time; jitter and gaps are bridged linearly.
 
@@ -187,12 +188,14 @@ def make_run(
     a force-driven run that has no effort; a chamber without a sensor then has the pressure of the `atmosphere` [Pa]. In
     chambers whose motion is an input, a pressure without a sensor is constant and not judged. `chambers` are those of
     the machine, by default of a double-acting cylinder; the pressure of another side is left out. Without a valve, a
-    run need not be `commanded`. Raises DataError when the
+    run need not be `commanded`; a `self_driven` machine needs no force, and its input is 0. Raises DataError when the
     recording is too short, sampled too slowly, or lacks the input or the absolute pressures of this kind.
     """
     time = recording.time
     driven = recording.force_driven if force_driven is None else force_driven
-    by_pressures = bool(driven and areas and recording.pressures_drive)
+    by_pressures = bool(driven and areas and recording.pressures_drive and not self_driven)
+    if self_driven:
+        recording = replace(recording, effort=np.zeros(len(time)))
     if areas and by_pressures:
         both = [atmosphere if p is None else p for p in (recording.pressure_a, recording.pressure_b)]
         recording = replace(recording, effort=np.asarray(areas[0] * both[0] - areas[1] * both[1]))
@@ -243,7 +246,10 @@ def run_for(recording: Recording, model: Model) -> Run:
     """`make_run` with what `model` needs; DataError when the recording lacks it."""
     areas = (model["piston.area_a"], model["piston.area_b"])
     atmosphere = model.parameters.get("air.atmospheric_pressure", ATMOSPHERE)
-    return make_run(recording, model.force_driven, model.imposed, areas, atmosphere, model.chambers, model.has_valve)
+    return make_run(
+        recording, model.force_driven, model.imposed, areas, atmosphere, model.chambers, model.has_valve,
+        model.self_driven,
+    )  # fmt: skip
 
 
 def _force(recording: Recording) -> Array:

@@ -6,13 +6,15 @@ from pathlib import Path
 import numpy as np
 
 from pneumo_ros.errors import DataError
+from pneumo_ros.measured import MEASURED
 from pneumo_ros.records.recording import Array
 from pneumo_ros.tables.map_file import Map
 from pneumo_ros.tables.mapped import Mapped
 from pneumo_ros.tables.signals import SIGNALS
 from pneumo_ros.tables.table import Table
 
-_BEHAVIOUR = ("force", "load_cell", "pressure_a", "pressure_b", "command")  # with position, one of these makes a law
+_BEHAVIOUR = ("force", "load_cell", "pressure_a", "pressure_b", "command", "reference")  # one makes a law with position
+_HELD = ("command", *(one.name for one in MEASURED if one.held))  # may be constant
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
 _PRESSURES = ("pressure_a", "pressure_b", "supply_pressure")
 
@@ -43,7 +45,7 @@ def check_values(path: Path, signals: Mapping[str, Array], found: Mapped, warn: 
             raise DataError(f"{path}: {name} has no finite number where the clock is usable; leave it out of the map")
         if name in _PRESSURES:
             _check_pressure(path, name, finite, found, warn)
-        if len(finite) > 1 and finite.min() == finite.max() and name in SIGNALS and name != "command":
+        if len(finite) > 1 and finite.min() == finite.max() and name in SIGNALS and name not in _HELD:
             warn(f"{name} is {finite[0]:.4g} {found.units[name]} throughout: {_constant(name)}.")
 
 

@@ -80,7 +80,7 @@ def imported(table: Table, plan: Map, rate: float | None = None) -> Imported:
 
 def write_bag(found: Imported, path: str | Path) -> None:
     """Write the recording as a new rosbag2 folder. Raises DataError or UsageError when `path` exists."""
-    fields = {"position", "velocity", "load_cell", "pressure_a", "pressure_b", "supply_pressure", "reference"}
+    fields = {"position", "velocity", "load_cell", "pressure_a", "pressure_b", "supply_pressure"}
     given: dict[str, Any] = {name: values for name, values in found.signals.items() if name in fields}
     if found.command is not None:
         given["command_time"], given["command"] = found.command

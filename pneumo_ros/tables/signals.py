@@ -25,6 +25,5 @@ SIGNALS = {
     "pressure_b": Signal(("pressure",), contract.PRESSURE_B, "pressure in chamber b"),
     **{one.name: Signal(one.dimensions, one.topic, one.meaning.partition(",")[0]) for one in MEASURED},
     "command": Signal(_DRIVE, contract.COMMAND, "valve command"),
-    "reference": Signal(_WAY, contract.REFERENCE, "wanted position"),
 }
 MOTIONS = ("free", "imposed")

@@ -25,6 +25,7 @@ def reads_sensors(effect: type[Effect]) -> bool:
     return any(MEASURED.intersection(function.reads) for function in effect.functions.values())
 
 
+EVERY = [*FRAME_EFFECTS, *map(LIBRARY.find, LIBRARY.names())]
 CATALOGUE = [effect for effect in map(LIBRARY.find, LIBRARY.names()) if not reads_sensors(effect)]
 EFFECTS = {effect.name: effect for effect in [*FRAME_EFFECTS, *CATALOGUE]}
 AXIS = load_model("axis")
@@ -57,7 +58,7 @@ def meaning(name: str, effect: type[Effect]) -> tuple[str, Parameter | None]:
     if name in SIGNALS:
         return SIGNALS[name].unit, None
     owner, _, key = name.rpartition("__")
-    for other in EFFECTS.values():
+    for other in EVERY:
         if key in other.parameters and owner in ("", other.name):
             return other.parameters[key].unit, other.parameters[key]
     raise KeyError(name)
