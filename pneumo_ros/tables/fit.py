@@ -17,6 +17,7 @@ _BEHAVIOUR = ("force", "load_cell", "pressure_a", "pressure_b", "command", "refe
 _HELD = ("command", *(one.name for one in MEASURED if one.held))  # may be constant
 _SEVERAL = 1e-3  # share of the samples below which impossible values are dropouts
 _PRESSURES = ("pressure_a", "pressure_b", "supply_pressure")
+_SIGN = "its sensor or driver counts the wrong way, it seems; type sign: -1 in its line of the map"
 
 
 def check_signals(table: Table, plan: Map, found: Mapped) -> None:
@@ -45,6 +46,8 @@ def check_values(path: Path, signals: Mapping[str, Array], found: Mapped, warn: 
             raise DataError(f"{path}: {name} has no finite number where the clock is usable; leave it out of the map")
         if name in _PRESSURES:
             _check_pressure(path, name, finite, found, warn)
+        elif found.units[name] == "Pa" and _reversed(finite):
+            warn(f"{_below(name, finite, found)}: {_SIGN}.")
         if len(finite) > 1 and finite.min() == finite.max() and name in SIGNALS and name not in _HELD:
             warn(f"{name} is {finite[0]:.4g} {found.units[name]} throughout: {_constant(name)}.")
 
@@ -54,9 +57,9 @@ def _check_pressure(path: Path, name: str, finite: Array, found: Mapped, warn: C
     low, share = float(finite.min()), float(np.mean(finite <= 0.0))
     if low > 0.0:
         return
-    said = (
-        f"{name} (column {found.origins[name]}) falls to {low:.4g} Pa absolute, in {100.0 * share:.2g} % of its samples"
-    )
+    said = _below(name, finite, found)
+    if _reversed(finite):
+        raise DataError(f"{path}: {said}: {_SIGN}")
     if share > _SEVERAL:
         raise DataError(
             f"{path}: {said}; no pressure does. If it is measured against the atmosphere, type gauge: true; else "
@@ -64,6 +67,20 @@ def _check_pressure(path: Path, name: str, finite: Array, found: Mapped, warn: C
             "unit, scale and offset in the map"
         )
     warn(f"{said}: its sensor drops out.")
+
+
+def _below(name: str, finite: Array, found: Mapped) -> str:
+    """How far a pressure falls below 0, in words."""
+    share = 100.0 * float(np.mean(finite <= 0.0))
+    return (
+        f"{name} (column {found.origins[name]}) falls to {float(finite.min()):.4g} Pa absolute, in {share:.2g} % of "
+        "its samples"
+    )
+
+
+def _reversed(finite: Array) -> bool:
+    """Whether a pressure is mostly below 0: a sensor that is right reads little less than the atmosphere's."""
+    return float(np.sum(np.minimum(finite, 0.0) ** 2)) > float(np.sum(np.maximum(finite, 0.0) ** 2))
 
 
 def _constant(name: str) -> str:

@@ -285,3 +285,15 @@ def test_the_description_is_plain_json(tmp_path: Path) -> None:
     told = json.loads(json.dumps(description(found)))
     assert told["map"]["source"] == "2021-07-26"
     assert found.rate == pytest.approx(RATE)
+
+
+def test_a_pressure_that_counts_the_wrong_way_is_named() -> None:
+    time = np.arange(200) * 0.01
+    rows, oil = driven(time), 2e7 * np.sin(3.0 * time) ** 2 - 1e4
+    plan = DRIVEN + "\nothers: {oil: {column: oil, unit: psi, gauge: true}}"
+    notes = {sign: make({**rows, "oil": sign * oil / 6894.757}, plan).notes for sign in (1.0, -1.0)}
+    assert not any("wrong way" in note for note in notes[1.0])  # some kPa below the atmosphere's are noise
+    assert any("oil (column oil) falls to" in note and "type sign: -1" in note for note in notes[-1.0])
+    sealed = plan.replace("others: {oil", "signals: {position: {column: x, unit: m}, pressure_a").replace(DRIVEN, "")
+    with pytest.raises(DataError, match=r"pressure_a .* counts the wrong way.*type sign: -1"):
+        make({**rows, "oil": -(2e5 + 1e5 * np.sin(time)) / 100.0}, "time: {column: t, unit: s}" + sealed)
