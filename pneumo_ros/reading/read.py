@@ -11,6 +11,7 @@ from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import SIDES
 from pneumo_ros.plant.mechanical import mechanical, pneumatic
+from pneumo_ros.reading.late import earlier, lateness
 from pneumo_ros.reading.lengths import check_length
 from pneumo_ros.reading.motion import velocity_note
 from pneumo_ros.reading.plausible import check_run, supply_is_gauge
@@ -83,6 +84,14 @@ def checked_run(recording: Recording, model: Model, cuts: Sequence[Cut] = ()) ->
         whole = run_for(recording, model)
     except DataError as problem:
         raise (_vented_on_gauge(recording, model) or problem) from problem
+    if late := lateness(model, whole):
+        recording = earlier(recording, late)
+        whole = run_for(recording, model)
+        said = [
+            *said,
+            f"the pressures were recorded {abs(late):.2g} s {'after' if late > 0.0 else 'before'} the "
+            "position, as the gas of both chambers shows; they are taken at their own times",
+        ]
     check_length(model, whole)
     run, notes = _trusted(recording, model, without(whole, cuts))
     check_inputs(model, run)
