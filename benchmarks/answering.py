@@ -89,7 +89,8 @@ def answers(seconds: float, rate: float) -> None:
     print(f"\nAnswers at {rate:g} Hz, {seconds:g} s each; target: p99 under 3 ms, controller under 25 %\n")
     print(f"{'':34} {'p50':>9} {'p99':>9} {'largest':>9} {'unanswered':>11} {'rate':>8} {'controller':>11}")
     for law in LAWS:
-        patient = ("-p", "measurement_timeout:=10.0")  # else the 0 V that follows a silence would count as an answer
+        # the 0 V that follows a silence must not count as an answer; and no simulator says what closes the valve
+        patient = ("-p", "measurement_timeout:=10.0", "-p", "closed_signal:=0V")
         with nodes(("controller", *REFERENCE, *patient, "-p", f"law:={law}")) as pids:
             while not asking.ready():
                 time.sleep(0.1)
