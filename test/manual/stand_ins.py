@@ -120,14 +120,24 @@ def commissioned(folder: Path) -> None:
     recorded(folder / "mended", {"03_sines/train_sines": "sine:3,0.5", "19_sweep/train_sweep": "sine:5,0.9"})
 
 
+def launched(folder: Path) -> None:
+    """What a launch file has recorded."""
+    recorded(folder, {"run_1": "sine:3,0.5"})
+
+
 def arm(folder: Path) -> None:
     """An arm that its cylinder lifts."""
     (folder / "arm.xml").write_text(ARM)
 
 
-def rigs(folder: Path) -> None:
+def leaks(folder: Path) -> None:
+    """Machines as the folder `fleet`."""
+    rigs(folder, ("fleet",))
+
+
+def rigs(folder: Path, names: tuple[str, ...] = ("rigs", "fleet_folder")) -> None:
     """Two machines with two campaigns each."""
-    for name in ("rigs", "fleet_folder"):
+    for name in names:
         for machine in ("a", "b"):
             for week in ("week_0", "week_1"):
                 constants(folder / name / machine, week)
@@ -143,8 +153,9 @@ MADE: dict[str, tuple[Callable[[Path], None], ...]] = {
     "fleet.md": (rigs,),
     "identification.md": (constant_runs,),
     "import.md": (tables,),
-    "nodes.md": (commissioned, my_file),
+    "nodes.md": (commissioned, my_file, launched),
     "python.md": (named_runs, my_file),
     "recordings.md": (runs, my_file),
+    "trust.md": (leaks,),
     "workbench.md": (runs, axis_file, effects_file),
 }

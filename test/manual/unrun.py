@@ -1,20 +1,20 @@
 """Which statements of the pages the checks do not run, each with the reason; and how long ones are shortened."""
 
 import re
+import sys
+from pathlib import Path
 
-UNRUN = {  # pattern of a statement -> why it is not run here, and what follows it instead
-    r"make (demo|test)$": "the tests themselves; and the demo, which test/command/test_demo.py runs",
-    r"make (paper|fuzz|chaos|endurance|supply)": "minutes to hours; their parts are tested: test_paper, test_fuzz",
-    r"python benchmarks/": "minutes to hours: make bench; test/test_benchmarks.py holds what they assume",
-    r"pneumo demo$": "test/command/test_demo.py runs it",
-    r"pneumo new$": "asks at a terminal; test/command/test_new.py answers",
-    r"pneumo commission ": "moves a live plant for minutes; test/ros and test/commission do so",
-    r"pneumo experiment constant-voltage --namespace": "moves a live plant for minutes; test/ros does so",
-    r"pneumo fleet .*dask=": "needs a cluster",
-    r"pneumo fleet fleet$": "the twelve machines that benchmarks/fleet_of_leaks.py records in minutes",
-    r"ros2 |rosdep |\. install/setup.sh|python3 -m colcon |python3 -m venv ": "needs a ROS 2 distribution; "
-    "test/packaging builds with colcon and reads the launch files",
-    r"pip install ": "needs a network; make supply installs the wheel",
+ELSEWHERE = {  # pattern of a statement that is not run here, but by another test of make test or make check -> which
+    r"make test$": "it is the tests",
+    r"make demo$|pneumo demo$": "test/command/test_demo.py runs it",
+    r"make supply": "a stage of make check",
+    r"python3 -m colcon build|\. install/setup.sh": "test/packaging/test_installs.py builds with colcon and sources it",
+}
+UNRUN = {  # pattern of a statement -> why no test runs it, and what follows it instead
+    r"python benchmarks/bench_blind.py": "minutes for each machine; test_benchmarks holds what it assumes",
+    r"python benchmarks/fleet_of_leaks.py": "minutes: records and diagnoses eight campaigns; test/fleet does two",
+    r"ros2 launch ": "needs a ROS 2 distribution; test/packaging reads the launch files",
+    r"rosdep ": "needs a ROS 2 distribution; test/packaging compares package.xml with what is imported",
 }
 UNRUN_CODE = {  # page -> languages of blocks that are no program
     "commissioning.md": {"text": "what the command prints"},
@@ -22,14 +22,32 @@ UNRUN_CODE = {  # page -> languages of blocks that are no program
         "yaml": "a part of a machine file; test_code reads it as YAML and finds its names in axis.yaml"
     },
 }
+_MAKE = f"-o .venv/ready BIN={Path(sys.executable).parent}"  # with this environment, as it is
+AT_THE_TOP = r"make |python benchmarks/|pip install "  # pattern of statements that are typed in the checkout
 MORE = {  # pattern -> options that keep a check short
     r"pneumo diagnose (?!.*--within)": "--within 60",
     r"pneumo tune (?!.*--evaluations)": "--evaluations 4",
     r"pneumo workbench ": "--port 0",
+    r"pneumo commission .*--folder": "--stage 0 --overwrite --folder moved_again",
+    r"pneumo commission ": "--stage 0 --overwrite --folder moved",
+    r"pneumo experiment constant-voltage --namespace": "--voltages 3 --seconds 1 --out moved",
+    r"python benchmarks/bench_kernel": "--repetitions 1 --starts 1",
+    r"python benchmarks/bench_export": "--repetitions 1",
+    r"python benchmarks/bench_bag_reading": "--messages 2000 --repetitions 1",
+    r"python benchmarks/bench_identify": "--seeds 1",
+    r"python benchmarks/bench_control": "--only time",
+    r"python benchmarks/bench_nodes": "--seconds 3 --answer-seconds 1",
+    r"python benchmarks/bench_fleet": "--most 2 --processes 1 --no-diagnosis",
+    r"make fuzz": f'{_MAKE} FUZZ="--inputs 40 --cuts 5 --only file"',
+    r"make chaos": f'{_MAKE} CHAOS="--faults 1"',
+    r"make endurance": f'{_MAKE} ENDURANCE="--hours 0.01 --minutes 0"',
+    r"make ": _MAKE,
+    r"pip install ": "--dry-run --no-build-isolation",
 }
 SERVING = {  # pattern of a statement that runs until Ctrl-C -> what it says when it is up
     r"simulator |controller |recorder |commission ": r"ready|recording",
     r"pneumo workbench ": r"http://",
+    r"ros2 run pneumo_ros simulator ": r"ready",
 }
 INSIDE = (0, 1)  # exit codes of a statement that worked: done, or done but outside what was asked
 
