@@ -12,14 +12,18 @@ from pneumo_ros.export.signature import InexpressibleError
 from pneumo_ros.plant import Effect
 
 
-def refusal(effects: tuple[type[Effect], ...], function: ast.FunctionDef, problem: InexpressibleError) -> UsageError:
+def refusal(
+    effects: tuple[type[Effect], ...], function: ast.FunctionDef, problem: InexpressibleError, language: str = "C"
+) -> UsageError:
     """UsageError that names effect, file and line of what could not be translated in a function of the kernel."""
     assert isinstance(problem.node, ast.stmt)
     text = ast.unparse(problem.node).splitlines()[0]
     owner, source = _origin(effects, function.name)
     place = _place(source, function, problem.node) if source is not None else f"function {function.name}"
     effect = f"effect {owner}" if owner else "the machine"
-    return UsageError(f"{effect} cannot be exported to C: {place}: `{text}`: {problem.what}; rewrite that line")
+    return UsageError(
+        f"{effect} cannot be exported to {language}: {place}: `{text}`: {problem.what}; rewrite that line"
+    )
 
 
 def _origin(effects: tuple[type[Effect], ...], name: str) -> tuple[str, Callable[..., Any] | None]:

@@ -121,6 +121,7 @@ class Effect:
     parameters: ClassVar[dict[str, Parameter]] = {}
     states: ClassVar[dict[str, State]] = {}
     functions: ClassVar[dict[str, Function]] = {}
+    invariant: ClassVar[bool] = False  # `advance` only keeps what the exact equations keep, and one step may overshoot
     signature: ClassVar[str] = ""  # how a person recognises the effect in a recording, one line
     remedy: ClassVar[str] = ""  # what to do at the machine when it is found, one line
     source: ClassVar[str] = ""

@@ -1,4 +1,4 @@
-"""Write a machine for other programs: a functional mock-up unit (FMI), C99 for a controller, or MJCF."""
+"""Write a machine for other programs: a functional mock-up unit (FMI), C99 for a controller, Modelica, or MJCF."""
 
 import argparse
 import shlex
@@ -14,20 +14,22 @@ from pneumo_ros.nearest import unknown_name
 if TYPE_CHECKING:
     from pneumo_ros.plant import Model
 
-ENDINGS = {"fmu": ".fmu", "c": ".c", "mjcf": ".xml"}
+ENDINGS = {"fmu": ".fmu", "c": ".c", "mjcf": ".xml", "modelica": ".mo"}
 FMI = ("3", "2")
 
 EXAMPLES = (
     "pneumo export fmu my.yaml --out axis.fmu",
     "pneumo export c my.yaml --out axis.c",
+    "pneumo export modelica my.yaml --out axis.mo",
     "pneumo export mjcf my.yaml --out axis.xml",
 )  # parsed by a test
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """FORMAT, MODEL, --out, --fmi and the common options."""
-    formats = "fmu: for other simulators; c: one C99 file and its header; mjcf: the mechanism for MuJoCo"
-    parser.add_argument("format", metavar="fmu|c|mjcf", help=formats)
+    formats = "fmu: for other simulators; c: one C99 file and its header; modelica: a package of its equations; "
+    formats += "mjcf: the mechanism for MuJoCo"
+    parser.add_argument("format", metavar="fmu|c|modelica|mjcf", help=formats)
     parser.add_argument("machine", metavar="MODEL", help="machine file, or the name of a shipped one")
     parser.add_argument("--out", required=True, metavar="FILE", help="file to write, such as axis.fmu or axis.c")
     parser.add_argument("--fmi", metavar="VERSION", help="of the standard, for fmu: 3 (default) or 2")
@@ -59,6 +61,8 @@ def _written(options: argparse.Namespace, model: "Model", target: Path, version:
         return _write_c(model, target)
     if options.format == "fmu":
         return _write_fmu(model, target, version)
+    if options.format == "modelica":
+        return _write_modelica(model, target)
     from pneumo_ros.export.mjcf import mjcf_text
 
     write_whole(target, mjcf_text(model, options.machine))
@@ -87,6 +91,13 @@ def _write_c(model: "Model", target: Path) -> list[Path]:
     write_whole(header, declarations)
     write_whole(target, source)
     return [target, header]
+
+
+def _write_modelica(model: "Model", target: Path) -> list[Path]:
+    from pneumo_ros.export import Exported, modelica_text
+
+    write_whole(target, modelica_text(Exported(model)))
+    return [target]
 
 
 def _write_fmu(model: "Model", target: Path, version: int) -> list[Path]:

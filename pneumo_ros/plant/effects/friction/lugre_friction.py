@@ -50,6 +50,8 @@ class LugreFriction(Effect):
         static_level = friction_scale * static_scale * static_friction + friction_rise + static_rise
         return static_level
 
+    invariant = True
+
     def advance(
         v, z, friction_scale, friction_rise, static_scale, static_rise,
         static_friction, coulomb_friction, bristle_stiffness,
