@@ -81,7 +81,7 @@ def test_reasons_name_tests_that_exist() -> None:
 
 def test_blocks_of_code_are_followed() -> None:
     """A language without a test of its own is listed with the reason."""
-    followed = {"import.md": {"yaml"}, "parts.md": {"yaml"}, "export.md": {"c"}, "recordings.md": {"yaml"}}
+    followed = {"import.md": {"yaml"}, "parts.md": {"yaml"}, "export.md": {"c", "modelica"}, "recordings.md": {"yaml"}}
     for page in PAGES:
         for block in blocks(page):
             known = {"python", *followed.get(page.name, ()), *UNRUN_CODE.get(page.name, ())}
@@ -161,3 +161,17 @@ def test_the_manual_builds_without_a_warning(tmp_path: Path) -> None:
     effects = (tmp_path / "reference" / "effects.html").read_text(encoding="utf-8")
     assert "No picture" not in re.sub("No picture: effects of .axis. read measured signals", "", effects)
     assert effects.count("<img") > 20
+
+
+def test_the_modelica_of_the_export_moves_the_machine(tmp_path: Path) -> None:
+    from pneumo_ros.command.main import main
+
+    rumoca = pytest.importorskip("rumoca", reason="a Modelica compiler; it comes with the extra 'dev'")
+    (tmp_path / "my_axis.yaml").write_text((ROOT / "config" / "axis.yaml").read_text())
+    machine = tmp_path / "axis.mo"
+    assert main(["export", "modelica", str(tmp_path / "my_axis.yaml"), "--out", str(machine), "--quiet"]) == 0
+    (tmp_path / "trial").mkdir()
+    whole = tmp_path / "trial" / "trial.mo"
+    whole.write_text(machine.read_text() + code("export.md", "modelica"))
+    found = rumoca.Session().load(str(whole), model="Trial").simulate(t=(0.0, 1.5), dt=0.1)
+    assert list(found["m.y"])[-1] > 0.01
