@@ -70,13 +70,25 @@ def read_one(path: str, options: argparse.Namespace, console: Console, model: "M
     reading = read_run(path, model, read_options(options), _cuts(options).get(Path(path).resolve(), ()))
     for note in reading.notes:
         console.note(f"{reading.recording.name}: {note}")
-    return _on_shared_supply({path: reading}, options)[path]
+    return _on_shared_supply({path: reading}, options, console)[path]
 
 
-def _on_shared_supply(usable: "Mapping[str, Reading]", options: argparse.Namespace) -> "Mapping[str, Reading]":
+def _on_shared_supply(
+    usable: "Mapping[str, Reading]", options: argparse.Namespace, console: Console
+) -> "Mapping[str, Reading]":
     """The readings of one axis of several, with the pressure of the supply that they share where it is computed."""
     together: Together | None = getattr(options, "together", None)
-    return together.supplied(usable) if together else usable
+    if together is None:
+        return usable
+    found = together.supplied(usable)
+    for path, reading in found.items():
+        gone = int((usable[path].run.measured & ~reading.run.measured).sum()) * reading.run.sample_time
+        if gone:
+            console.note(
+                f"{reading.recording.name}: it begins in motion; what the axes drew before is not known, nor is the "
+                f"supply's pressure: {gone:.2g} s at the start are left out"
+            )
+    return found
 
 
 def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model":
@@ -116,5 +128,5 @@ def read_expanded(
             required=[path for path, from_folder in paths.items() if not from_folder],
             progress=progress, note=console.note, refuse=lambda path, why: console.note(f"Passed over: {why}"),
         )  # fmt: skip
-    runs = [reading.run for reading in _on_shared_supply(found.usable, options).values()]
+    runs = [reading.run for reading in _on_shared_supply(found.usable, options, console).values()]
     return runs, dict(found.refused)

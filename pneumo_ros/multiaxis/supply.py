@@ -19,6 +19,7 @@ from pneumo_ros.runs.sensors import driven
 Array = NDArray[np.float64]
 ROUNDS = 40  # of the fixed point, at most
 ENOUGH = 20.0  # Pa: less than any sensor of such a supply shows
+SURE = 1e-3  # of the supply pressure: a difference of the start that no longer matters
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,11 @@ class Timed:
         further = {**self.run.further, MEASURED: held}
         return replace(self, run=replace(self.run, further=further, computed=frozenset({MEASURED})))
 
+    def measured_from(self, time: float) -> "Timed":
+        """The same with the samples before `time` [s] as not measured; itself where there are none."""
+        late = self.time >= time
+        return self if late.all() else replace(self, run=replace(self.run, measured=self.run.measured & late))
+
     def drawn(self) -> Array:
         """Mean mass flow (n - 1,) that this axis draws in each interval [kg/s], at its supply pressure as held."""
         model = drawing_model(self.model)
@@ -55,7 +61,8 @@ class Timed:
 def supplied(axes: Mapping[str, Timed], line: Mapping[str, float], first: Array | None = None) -> dict[str, Timed]:
     """The axes of one recording with the supply's pressure that `line` gives; `first` (n,): a guess of the drop.
 
-    line: resistance_supply [Pa s/kg] and time_constant [s]. The drop begins with that of the flow at the start.
+    line: resistance_supply [Pa s/kg] and time_constant [s]. The drop begins with that of the flow at the start. Where
+    that is no rest, what the axes drew before is not known: samples count as not measured until it does not matter.
     """
     grid = next(iter(axes.values()))
     drop = np.zeros(len(grid.run)) if first is None else first
@@ -69,7 +76,25 @@ def supplied(axes: Mapping[str, Timed], line: Mapping[str, float], first: Array 
         if damping == 1.0 and change > 0.0 and not drop.any():  # the loop's gain R dq/dp, by its first round
             damping = 1.0 / (1.0 + line["resistance_supply"] * _slope(axes, now, new, grid))
         drop = drop + damping * (new - drop)
-    return {name: one.supplied(np.interp(one.time, grid.time, drop)) for name, one in axes.items()}
+    found = {name: one.supplied(np.interp(one.time, grid.time, drop)) for name, one in axes.items()}
+    sure = _sure_from(found, drop, grid, line)
+    return {name: one.measured_from(sure) for name, one in found.items()}
+
+
+def _sure_from(axes: Mapping[str, Timed], drop: Array, grid: Timed, line: Mapping[str, float]) -> float:
+    """The time [s] from which a start at any other drop of the recording gives the same, within SURE of the supply.
+
+    A difference d of the drop decays as tau d' = -(1 + R s) d, where the axes draw s less per pascal.
+    """
+    sure, spread = SURE * grid.pressure, float(drop.max() - drop.min())
+    if drop[0] < sure or spread < sure:  # it begins at rest: the supply is full
+        return float(grid.time[0])
+    more = {name: one.supplied(np.interp(one.time, grid.time, drop) + sure) for name, one in axes.items()}
+    slope = np.maximum(drawn_together(axes, grid) - drawn_together(more, grid), 0.0) / sure
+    rate = (1.0 + line["resistance_supply"] * slope) / line["time_constant"]
+    left = spread * np.exp(-np.cumsum(rate) * grid.run.sample_time)
+    index = min(int(np.argmax(left < sure)) if (left < sure).any() else len(left), len(left) // 2)
+    return float(grid.time[index + 1])
 
 
 def _slope(axes: Mapping[str, Timed], full: Mapping[str, Timed], drop: Array, grid: Timed) -> float:
