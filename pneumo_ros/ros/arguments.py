@@ -39,7 +39,11 @@ def parse(
             "--effects", action="append", default=[], metavar="FILE.py",
             help="file with effects of your own; it is executed, so name only files you trust",
         )  # fmt: skip
-    parsed = parser.parse_args(remove_ros_args([name, *given])[1:])
+    try:
+        own = remove_ros_args([name, *given])[1:]
+    except RuntimeError as error:  # RCLInvalidROSArgsError is no class of rclpy's public modules
+        parser.error(f"ROS arguments are refused: {error}")
+    parsed = parser.parse_args(own)
     return Arguments(tuple(getattr(parsed, "effects", ())), tuple(given))
 
 
