@@ -24,6 +24,7 @@ from pneumo_ros.plant import Model, load_model
 from pneumo_ros.reading.read import read_runs
 from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.runs.run import Run
+from pneumo_ros.shooting.refit import refit
 from pneumo_ros.shooting.windows import free_run
 
 HERE = Path(__file__).parent
@@ -58,6 +59,7 @@ def row(name: str, case: dict[str, Any], folder: Path) -> str:
             f"  predicted  over {case['horizon']:g} s, noise floors: {course}",
             f"  simulated  from the first sample alone: {alone(found)}",
             f"  mean size  of that error over all of them: {size_of_all(found, held)}",
+            *(refitted(found, train, held, case["segment"]) if "segment" in case else ()),
             f"  published  {case['published']}",
         ]
     )
@@ -80,6 +82,20 @@ def alone(found: Outcome) -> str:
             words, unit, factor = SIGNALS[name]
             parts.append(f"{after.name} {words} {factor * before.free[name]:.3g} -> {factor * error:.3g} {unit}")
     return "; ".join(parts)
+
+
+def refitted(found: Outcome, train: list[Run], held: list[Run], segment: float) -> list[str]:
+    """What was found, fitted once more to segments of `segment` [s]; the rms of whole simulations with it."""
+    added = {one.effect for one in found.added}
+    wide = {name: found.model.usual_size(name) for name in found.model.parameters if name.partition(".")[0] in added}
+    fitted = refit(found.model, train, priors=wide, segment=segment)
+    sizes = ", ".join(f"{name} {one.value:.3g} +- {one.std:.1g}" for name, one in fitted.estimates.items())
+    parts = []
+    for run in held:
+        for name, error in free_run(fitted.model, run).errors.items():
+            words, unit, factor = SIGNALS[name]
+            parts.append(f"{run.name} {words} {factor * np.sqrt(np.nanmean(error**2)):.3g} {unit}")
+    return [f"  refitted   over {segment:g} s: {sizes}", f"  simulated  with that: {'; '.join(parts)}"]
 
 
 def size_of_all(found: Outcome, held: list[Run]) -> str:
