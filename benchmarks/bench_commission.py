@@ -1,11 +1,13 @@
 """Commissioning of rigs that differ from their data sheets: wiring found, limits kept, intervals narrowed.
 
 Usage: python benchmarks/bench_commission.py [--rigs 10] [--plugs 10] [--limits 20] [--second 2] [--first-seed 0]
-       [--known-valve]
+       [--known-valve] [--figures]
 
 A cylinder of 25/10 mm with a stroke of 200 mm and a valve of 700 l/min, as `pneumo new` makes it. Every rig is drawn
 within the scatter of these figures, has sensors with noise at 500 Hz, stands anywhere in the middle of its stroke, and
-is moved by the conductor that moves real ones. Rigs whose friction takes 60 % of the force are drawn anew.
+is moved by the conductor that moves real ones. Rigs whose friction takes 60 % of the force are drawn anew. Parameters
+are drawn by their deviations, each by itself and beyond what the sources allow: static friction of seven times that in
+motion, a valve that opens within 30 mV. With --figures, each figure of the sources lies anywhere in its interval.
 
 plugs: each of 48 combinations of swapped chambers, reversed position, reversed command, gauge sensors and the encoder's
 zero, for so many rigs; the unit of pressure is given, that of the position is not.
@@ -30,6 +32,7 @@ from pneumo_ros.commission.simulated import SimulatedRig
 from pneumo_ros.commission.wiring import as_run
 from pneumo_ros.errors import NumericalError, PneumoError
 from pneumo_ros.experiment.catalogue import make_programme
+from pneumo_ros.parts.assemble import parameters
 from pneumo_ros.parts.design import Wishes, design
 from pneumo_ros.parts.shelf import load_shelf
 from pneumo_ros.plant import Model
@@ -38,6 +41,7 @@ from pneumo_ros.shooting.refit import default_free, default_prior
 
 MINUTES, FRICTION = 3.0, 0.6  # min; share of the force
 UNSTATED, SURE = ("dead_zone.", "arctan_flow.voltage_gain"), 1e-4  # of the valve, in no data sheet; as known [V, 1/V]
+WISHES = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
 COMBINATIONS = tuple(
     tuple(word for word in choice if word)
     for choice in itertools.product(
@@ -49,8 +53,7 @@ COMBINATIONS = tuple(
 
 def data_sheet() -> Model:
     """The machine as its data sheets tell it."""
-    wishes = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
-    return design(wishes, load_shelf([])).model
+    return design(WISHES, load_shelf([])).model
 
 
 def rig_of(model: Model, seed: int, words: tuple[str, ...] = ()) -> SimulatedRig:
@@ -59,6 +62,19 @@ def rig_of(model: Model, seed: int, words: tuple[str, ...] = ()) -> SimulatedRig
     wide = {name: default_prior(model, name) for name in default_free(model)}
     drawn = (truth for again in range(20) for truth in moves.drawn(model, wide, 1, seed + 100_000 * again))
     truth = next(one for one in drawn if _movable(one) and _integrable(one))
+    return SimulatedRig(truth, words, seed=seed, position=float(random.uniform(-0.04, 0.04)))
+
+
+def rig_of_figures(model: Model, seed: int, words: tuple[str, ...] = ()) -> SimulatedRig:
+    """A rig whose figures lie anywhere in the intervals of their sources."""
+    random, order = np.random.default_rng([seed, 7]), design(WISHES, load_shelf([])).order
+    figures = order.figures.items()
+    for _ in range(20):
+        drawn = {key: float(random.uniform(figure.low, figure.high)) for key, figure in figures}
+        values = parameters(order, order.nominal | drawn)
+        truth = model.with_parameters({name: values[name] for name in model.uncertainty if name in values})
+        if _movable(truth) and _integrable(truth):
+            break
     return SimulatedRig(truth, words, seed=seed, position=float(random.uniform(-0.04, 0.04)))
 
 
@@ -99,12 +115,12 @@ def plugs(model: Model, seeds: range) -> None:
     print("\n".join(wrong[:10]))
 
 
-def limits(model: Model, seeds: range) -> None:
+def limits(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig]) -> None:
     """How often a limit is reached once the wiring is known."""
     refused = 0
     farthest: dict[str, list[float]] = {"0": [], "1 and 2": []}
     for seed in seeds:
-        rig = rig_of(model, seed)
+        rig = make(model, seed)
         job = Commissioning(model, rig.perform, sensors=())
         for stage, work in (("0", job.wiring), ("1 and 2", job.basics)):
             rig.farthest = 0.0
@@ -190,18 +206,19 @@ def main() -> None:
     parser.add_argument("--limits", type=int, default=10)
     parser.add_argument("--second", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--figures", action="store_true", help="rigs within the intervals of the sources' figures")
     parser.add_argument("--known-valve", action="store_true", help="dead zone and linearity are those of the file")
     options = parser.parse_args()
-    model, first = data_sheet(), options.first_seed
+    model, first, make = data_sheet(), options.first_seed, rig_of_figures if options.figures else rig_of
     if options.known_valve:
         sure = {name: std for name, std in model.uncertainty.items() if not name.startswith(UNSTATED)}
         model = model.with_uncertainty(sure | dict.fromkeys(set(model.uncertainty) - set(sure), SURE))
     if options.plugs:
         plugs(model, range(first, first + options.plugs))
     if options.limits:
-        limits(model, range(first, first + options.limits))
+        limits(model, range(first, first + options.limits), make)
     if options.rigs:
-        rigs(model, range(first, first + options.rigs))
+        rigs(model, range(first, first + options.rigs), make)
     if options.second:
         from second_rig import file_of, second_rig
 

@@ -206,7 +206,7 @@ class Commissioning:
         self.moves.append(Move(name, _names(done), done.seconds))
         for recording in done.recordings:
             self.runs.append(self._run(recording))
-        self.known = knowledge(self.model, self.runs)
+        self.known = knowledge(self.model, self.runs, self.known.model)
 
     def _performed(self, programme: Programme, name: str) -> Performed:
         """Performed, with smaller voltages where a limit was reached, and larger ones where the piston did not move.

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.basefit import Known, slopes
+from pneumo_ros.diagnose.basefit import Known, slopes, strain
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import UNSEEN, Fitter
-from pneumo_ros.diagnose.hypothesis import cluster_robust, family_scales, weights
+from pneumo_ros.diagnose.hypothesis import cluster_robust, family_scales, log_likelihood, weights
 from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.identify.presliding import fit_presliding
 from pneumo_ros.plant import Model
@@ -28,7 +28,8 @@ from pneumo_ros.shooting.refit import default_free, default_prior
 Array = NDArray[np.float64]
 MINUTE = 60.0  # s
 NORMAL = 1.96  # deviations of a 95 % interval
-OPENED = 0.5  # of the largest command, at which the valve opens at the start of a fit
+OPENED = 0.8  # of the largest command, at which a valve opens at the start of a fit, or before
+LIMITS, GAIN = ("dead_zone.right_limit", "dead_zone.left_limit"), "arctan_flow.voltage_gain"
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,11 @@ class Knowledge:
         return {name: one.std for name, one in self.estimates.items()}
 
 
-def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
-    """`model`, as data sheets tell it, fitted to `runs`; without runs, what data sheets alone say."""
+def knowledge(model: Model, runs: Sequence[Run], before: Model | None = None) -> Knowledge:
+    """`model`, as data sheets tell it, fitted to `runs`; without runs, what data sheets alone say.
+
+    before: as fitted to fewer runs; its valve is one more to begin with.
+    """
     if not runs:
         estimates = {
             name: _estimate(model, name, model[name], default_prior(model, name)) for name in default_free(model)
@@ -106,7 +110,7 @@ def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
     together = on_one_clock(runs)
     fitter = Fitter(model, together, candidates=())
     known = fitter.known(model)
-    found = fitter.refit(opened(model, together))
+    found = _fitted(fitter, known, together, before)
     what = told(fitter.train, found, known)
     deviations = dict(zip(known.names, (what.deviations() * known.prior).tolist(), strict=True))
     found, seen = _presliding(found, together)
@@ -117,18 +121,37 @@ def knowledge(model: Model, runs: Sequence[Run]) -> Knowledge:
     return Knowledge(found, known, what, estimates)
 
 
-def opened(model: Model, runs: Sequence[Run]) -> Model:
-    """The model to begin a fit with: a valve that the commands of `runs` open to both sides.
+def begun(model: Model, runs: Sequence[Run]) -> list[Model]:
+    """Models to begin a fit with: valves as the data sheet says, and that open later or more steeply by a deviation.
 
-    Along commands within its dead zone a limit has no influence, so that no fit would find that it is narrower.
+    The flow over the command has a kink at the dead zone, so a fit finds the best one near its start only. Each of
+    these valves is opened by the commands of `runs`: within its dead zone a limit has no influence.
     """
-    closed = closed_signal(model)
-    held = np.concatenate([run.held for run in runs]) - closed
-    most = {"dead_zone.right_limit": float(held.max()), "dead_zone.left_limit": float(-held.min())}
-    begin = {
-        name: OPENED * volts for name, volts in most.items() if 0.0 < OPENED * volts < model.parameters.get(name, 0.0)
-    }
-    return model.with_parameters(begin)
+    held = np.concatenate([run.held for run in runs]) - closed_signal(model)
+    most = dict(zip(LIMITS, (float(held.max()), float(-held.min())), strict=True))
+    later, steeper = ({n: _farther(model, n) for n in names if n in model.uncertainty} for names in (most, (GAIN,)))
+    found = [model.with_parameters(values) for values in ({}, later, steeper, {**later, **steeper})]
+    return [
+        one.with_parameters({n: min(one[n], OPENED * volts) for n, volts in most.items() if n in later and volts > 0.0})
+        for one in (found if later or steeper else found[:1])
+    ]
+
+
+def _farther(model: Model, name: str) -> float:
+    return min(model[name] + model.uncertainty[name], model.specification(name).high)
+
+
+def _fitted(fitter: Fitter, known: Known, runs: Sequence[Run], before: Model | None) -> Model:
+    """The start of the fitter fitted from several valves: the best fit, or with that of `before` the best start."""
+
+    def likely(one: Model) -> float:
+        return log_likelihood(fitter.train, fitter.train.residual(one)) - strain(known.offset(one))
+
+    starts = begun(fitter.start, runs)
+    if before is not None:
+        valve = {name: before[name] for name in (*LIMITS, GAIN) if name in before.parameters}
+        return fitter.refit(max([fitter.start.with_parameters(valve), *starts], key=likely))
+    return max(map(fitter.refit, starts), key=likely)
 
 
 def _estimate(before: Model, name: str, value: float, deviation: float) -> Estimate:

@@ -26,6 +26,7 @@ SLOW, MODERATE, FAST = 0.12, 0.5, 1.5  # V beyond the dead zone
 MORE = 1.8  # factor of the voltages beyond the dead zone where the piston did not move
 DRAWN = 4  # machines, as they may be, that a move is rehearsed on
 LESS, FEWEST = 0.6, 0.05  # a move that would leave the limits is tried with this share of its voltages; smallest share
+ROOMS = (1.0, 0.6, 0.35)  # of the way between the limits, where less voltage does not help: a jump takes its way
 VAGUE = 0.3  # of its value: a deviation beyond which a positive parameter is known by a factor only
 REDRAWN = 20  # times that a machine which cannot be is drawn anew
 CLEAR = 0.95  # of the way to the end stop, beyond which no rehearsed piston may come
@@ -107,12 +108,13 @@ def _around(middle: Array, wide: Array, share: Array, low: Array, high: Array) -
 def safe(programme: Programme, machines: Sequence[Model]) -> Programme | None:
     """The programme with voltages small enough that none of `machines` reaches an end stop; None where none are.
 
-    They keep clear of it if they can: one whose friction at rest is a multiple of that in motion cannot.
+    They keep clear of it if they can. A piston whose friction at rest is a multiple of that in motion jumps as far at
+    any voltage, and hardly open valves brake it less: it turns nearer to mid stroke.
     """
     dead = narrowest(machines)
     shares = [LESS**k for k in range(1 + int(np.log(FEWEST) / np.log(LESS)))]
-    for clear, share in itertools.product((CLEAR, 1.0), shares):
-        tried = smaller(programme, dead, share)
+    for clear, room, share in itertools.product((CLEAR, 1.0), ROOMS, shares):
+        tried = replace(smaller(programme, dead, share), low=room * programme.low, high=room * programme.high)
         if not any(_reaches_end(tried, machine, clear) for machine in machines):
             return tried
     return None

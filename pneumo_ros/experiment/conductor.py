@@ -18,6 +18,9 @@ LAST = 1.0  # s over which the final speed is taken
 BRAKE, PRESENT = 0.02, 0.05  # m/s above which the valve brakes; s over which the present speed is taken
 AHEAD = 0.1  # s that a piston coasts after its valve has closed: a ramp ends so much earlier
 PAUSE = 0.5  # s at closed valve between two ramps of a blind programme
+# s: longest time for which a piston that jumps gathers speed, while its valve lets the pressure out; time over which
+# its speed is taken, short beside that
+GATHERS, SHORT = 0.1, 0.01
 MOVED, READ = 4.0, 10.0  # `end`s beyond which a blind position has moved, or reads, in mm: no piston is there in m
 
 Voltages = Generator[float, None, None]
@@ -39,7 +42,7 @@ class Conductor:
         self.time = self.position = 0.0
         self._inside = False
         self._metre = 1.0  # of a blind programme: m for one unit of the position
-        self._now, self._late = Trace(PRESENT), Trace(LAST)
+        self._now, self._late, self._short = Trace(PRESENT), Trace(LAST), Trace(SHORT)
         self._voltages = self._all()
 
     def step(self, time: float, position: float) -> float:
@@ -50,6 +53,7 @@ class Conductor:
         self.time, self.position = time, position
         self._check()
         self._now.add(time, position)
+        self._short.add(time, position)
         return next(self._voltages, 0.0)
 
     def _check(self) -> None:
@@ -170,12 +174,24 @@ class Conductor:
             while self.time - opened < ramps.seconds and not self._gone(home, start, direction * sign, ramps.way):
                 self._late.add(self.time, self.position)
                 yield direction * ramps.at(self.time - opened)
+            if self.time - opened < ramps.seconds:
+                if sign == 0.0:
+                    sign = direction * math.copysign(1.0, self._now.speed)
+                    home = home if count == 0 else self.position
+                yield from self._let_out(-direction * ramps.at(self.time - opened))
             yield from self._hold(PAUSE)
             if sign == 0.0 and self._metre * abs(self.position - start) >= 0.5 * ramps.way:
                 sign = direction * math.copysign(1.0, self.position - start)
                 home = home if count == 0 else self.position  # it stood at an end stop, or is stuck one way
             direction, count = -direction, count + 1
         return "time"
+
+    def _let_out(self, volts: float) -> Voltages:
+        """The opposite voltage while the piston gathers speed: closed chambers would keep what drives it."""
+        begin, fastest = self.time, 0.0
+        while self.time - begin < GATHERS and abs(self._short.speed) > fastest:
+            fastest = abs(self._short.speed)
+            yield volts
 
     def _gone(self, home: float, start: float, sense: float, way: float) -> bool:
         """Whether the piston is `way` [m] from `home` to the side of `sense`; 0: whether it moved so far from `start`.

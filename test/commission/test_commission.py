@@ -7,7 +7,7 @@ import pytest
 
 from pneumo_ros.commission import moves
 from pneumo_ros.commission.commission import Commissioned, Commissioning
-from pneumo_ros.commission.information import knowledge
+from pneumo_ros.commission.information import begun, knowledge
 from pneumo_ros.commission.performing import Performed
 from pneumo_ros.commission.simulated import SimulatedRig
 from pneumo_ros.commission.summary import errors, summary
@@ -63,15 +63,29 @@ def test_ten_seconds_tell_the_wiring(sheet: Model, truth: Model, words: tuple[st
     assert job.moves[0].seconds < 15.0
 
 
-def test_ten_seconds_tell_a_dead_zone_narrower_than_the_data_sheet_says(sheet: Model, truth: Model) -> None:
-    """To the left the commands never leave the dead zone of the data sheet, 0.2 V: there a fit sees no slope."""
-    limits = {"dead_zone.right_limit": 0.3, "dead_zone.left_limit": 0.03}
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"dead_zone.right_limit": 0.3, "dead_zone.left_limit": 0.03},
+        {"dead_zone.right_limit": 0.8, "dead_zone.left_limit": 0.8, "arctan_flow.voltage_gain": 2.0},
+    ],
+)
+def test_ten_seconds_tell_a_dead_zone_unlike_that_of_the_data_sheet(
+    sheet: Model, truth: Model, limits: dict[str, float]
+) -> None:
+    """Within the dead zone of the data sheet, 0.2 V, a fit sees no slope: it begins with one that commands leave."""
     job = Commissioning(sheet, SimulatedRig(truth.with_parameters(limits)).perform, sensors=())
     job.wiring()
-    assert min(run.held.min() for run in job.runs) > -sheet["dead_zone.left_limit"]
+    slow = [replace(run, input=np.clip(run.input, -0.1, 0.5)) for run in job.runs]
+    starts = begun(sheet, slow)
+    assert sorted({one["dead_zone.left_limit"] for one in starts}) == pytest.approx([0.08])
+    assert sorted({one["dead_zone.right_limit"] for one in starts}) == pytest.approx(
+        [0.2, 0.8 * max(run.held.max() for run in slow)]
+    )
     for name, volts in limits.items():
-        assert job.known.model[name] == pytest.approx(volts, abs=0.02)
-        assert job.known.deviations[name] < 0.02
+        if name.startswith("dead_zone"):
+            assert job.known.model[name] == pytest.approx(volts, abs=0.02)
+            assert job.known.deviations[name] < 0.02
 
 
 def test_voltages_shrink_towards_the_dead_zone_of_their_side(sheet: Model) -> None:

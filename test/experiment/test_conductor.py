@@ -9,7 +9,7 @@ import pytest
 from pneumo_ros.experiment.conductor import Conductor
 from pneumo_ros.experiment.programme import Programme, Trial
 from pneumo_ros.experiment.trial_result import AbortedError
-from pneumo_ros.experiment.voltages import Constant, Steps
+from pneumo_ros.experiment.voltages import Constant, Ramps, Steps
 
 SAMPLE = 0.01  # s
 SLOW = Trial("slow", Constant(0.5), 2.0, patience=3.0, travel=0.5)
@@ -185,3 +185,25 @@ def test_a_piston_that_creeps_at_closed_valve_is_mentioned() -> None:
     ride = Ride(PROGRAMME, lambda volts, position: cart(volts, position) or 0.004 * (1 if position < 0.5 else 0))
     assert any("does not come to rest" in text for text in ride.said)
     assert list(ride.outcomes) == ["slow", "back"]
+
+
+def test_a_ramp_lets_the_pressure_out_of_a_piston_that_jumps() -> None:
+    """Beyond 0.5 V pressure drives it, at any speed, until the opposite voltage has let it out."""
+    pressure, speed = 0.0, 0.0
+
+    def jumping(volts: float, position: float) -> float:
+        nonlocal pressure, speed
+        pressure += SAMPLE * 20.0 * (volts if abs(volts) > 0.1 else 0.0)
+        driven = abs(speed) > 0.0 or abs(pressure) > 2.0
+        speed = 0.95 * speed + SAMPLE * pressure if driven else 0.0
+        return speed
+
+    trial = Trial("plumbing", Ramps(1.0, 0.05, 2.5), 2.0, anywhere=True)
+    ride = Ride(Programme("plumbing", "cart", -0.9, 0.9, 0.99, 1.0, 1.0, (trial,), blind=True), jumping, longest=20.0)
+    rows = ride.of("plumbing")
+    first = next(k for k, (_, y, _) in enumerate(rows) if abs(y) > 1e-9)
+    braked = next(k for k in range(first, len(rows)) if rows[k][2] < 0.0)
+    shut = next(k for k in range(braked, len(rows)) if rows[k][2] == 0.0)
+    assert rows[braked][0] - rows[first][0] < 0.3
+    assert rows[shut][0] - rows[braked][0] <= 0.1 + 2.0 * SAMPLE
+    assert min(volts for _, _, volts in rows[braked:shut]) < -0.1
