@@ -46,8 +46,10 @@ def test_friction_rises_with_the_mean_gauge_pressure() -> None:
 def test_friction_rises_with_the_force_that_a_transmission_passes_on() -> None:
     """Half the sum of what pushes its two sides: 0 where a load is released as hard as it is driven."""
     effect = effect_function(EFFECTS["load_dependent_friction"], "equations")
-    rise = [effect(drive, load, 0.4) for drive, load in ((10.0, 10.0), (10.0, 0.0), (-5.0, -15.0), (8.0, -8.0))]
-    assert rise == pytest.approx([4.0, 2.0, 4.0, 0.0])
+    pushed = ((10.0, 10.0), (10.0, 0.0), (-5.0, -15.0), (8.0, -8.0))
+    rise, static = zip(*(effect(drive, load, 0.4, 0.02, 0.1) for drive, load in pushed), strict=True)
+    assert rise == pytest.approx([6.0, 2.5, 6.0, 0.0])
+    assert static == pytest.approx([1.0, 0.5, 1.0, 0.0])
 
 
 @pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0, 3.0])
