@@ -15,7 +15,7 @@ SAMPLE = 1e-3  # s
 STEPS = ((0.1, 0.0), (0.5, 3.0), (np.inf, -3.0))  # end [s] and voltage [V]
 BEFORE = {  # effects that read others
     "path_critical_ratios": ["choked_flow"], "subsonic_index": ["choked_flow"],
-    "second_regulator": ["pressure_regulator"],
+    "second_regulator": ["pressure_regulator"], "voltage_sag": ["dc_motor"],
 }  # fmt: skip
 EXPLICIT = ("position_dependent_friction", "pressure_regulator")  # Rumoca 0.10 refuses its own dense output of BDF here
 

@@ -3,6 +3,7 @@
 import csv
 import shlex
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,10 +35,16 @@ def rig() -> pn.Model:
     return axis.with_effects([*axis.effects, "viscous_friction"], {"viscous_friction.coefficient": 150.0})
 
 
-def recorded(folder: Path, drives: dict[str, str], seconds: float = 6.0) -> None:
-    """A recording of the rig for each drive."""
+def recorded(
+    folder: Path,
+    drives: dict[str, str],
+    seconds: float = 6.0,
+    sent: Callable[[pn.Recording], pn.Recording] = lambda r: r,
+) -> None:
+    """A recording of the rig for each drive, as it is `sent`."""
     for k, (name, drive) in enumerate(drives.items()):
-        pn.save(pn.simulate(rig(), drive, seconds=seconds, noise=NOISE, seed=k, name=name), folder / name)
+        one = pn.simulate(rig(), drive, seconds=seconds, noise=NOISE, seed=k, name=name)
+        pn.save(sent(one), folder / name)
 
 
 def runs(folder: Path) -> None:
@@ -114,10 +121,21 @@ def write_csv(recording: pn.Recording, path: Path) -> None:
 
 
 def commissioned(folder: Path) -> None:
-    """What a commissioning leaves: its machine, its rig file and its moves."""
+    """What a commissioning in the namespace `rig` leaves: its machine, its rig file and its moves."""
     pn.save_model(pn.load_model("axis"), folder / "mine.yaml")
-    (folder / "mine_rig.yaml").write_text("rig: {machine: mine.yaml, closed: 0V}\n")
-    recorded(folder / "mended", {"03_sines/train_sines": "sine:3,0.5", "19_sweep/train_sweep": "sine:5,0.9"})
+    words = "machine: mine.yaml, namespace: rig, closed: 5V, read_as: 'bar,gauge'"
+    (folder / "mine_rig.yaml").write_text(f"rig: {{{words}}}\n")
+    moves = {"03_sines/train_sines": "sine:3,0.5", "19_sweep/train_sweep": "sine:5,0.9"}
+    recorded(folder / "mended", moves, sent=by_the_rig)
+
+
+def by_the_rig(one: pn.Recording) -> pn.Recording:
+    """The recording as a rig with gauges in bar and a valve of 0 to 10 V sends it, in its namespace."""
+    assert one.pressure_a is not None
+    assert one.pressure_b is not None
+    assert one.command is not None
+    a, b = (1e-5 * (pressure - 101325.0) for pressure in (one.pressure_a, one.pressure_b))
+    return replace(one, namespace="rig", pressure_a=a, pressure_b=b, command=one.command + 5.0)
 
 
 def launched(folder: Path) -> None:

@@ -54,11 +54,11 @@ class Running:
             assert self.process.poll() is None or words in self.said, f"ended before it said {words!r}: {self.said}"
             time.sleep(0.01)
 
-    def end(self, number: int | None = signal.SIGINT) -> int:
-        """Exit code after signal `number`, or after its own end when None."""
+    def end(self, number: int | None = signal.SIGINT, patience: float = PATIENCE) -> int:
+        """Exit code after signal `number`, or after its own end when None; `patience` [s] bounds the wait."""
         if number is not None and self.process.poll() is None:
             self.process.send_signal(number)
-        code = self.process.wait(PATIENCE)
+        code = self.process.wait(patience)
         self._reader.join(PATIENCE)
         return code
 

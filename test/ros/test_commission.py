@@ -19,6 +19,7 @@ from pneumo_ros.plant import load_model, save_model
 from pneumo_ros.ros.qos import LATCHED
 
 WISHES = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
+LONG = 300.0  # s: moves of a minute and all fits, beside other tests
 NOISE = {"noise_position": 5e-6, "noise_pressure": 300.0, "publish_velocity": False}
 
 
@@ -56,7 +57,7 @@ def test_a_plant_is_commissioned_and_a_second_call_reads_what_was_recorded(tmp_p
         "--evaluations", "3", "--out", "mine.yaml", "--json", "found.json", "--report", "page.html",
     )  # fmt: skip
     with running(*plant, cwd=tmp_path) as simulator, running(*line, cwd=tmp_path) as command:
-        assert command.end(None) == 0, command.said
+        assert command.end(None, patience=LONG) == 0, command.said
         assert simulator.end(signal.SIGINT) == 0, simulator.said
     found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
     assert found["parameters"]["lugre_friction.coulomb_friction"]["value"] == pytest.approx(30.0, rel=0.03)
