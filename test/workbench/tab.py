@@ -1,5 +1,6 @@
 """A browser tab with the workbench: its content, its requests and its error messages."""
 
+import time
 from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
@@ -58,10 +59,10 @@ class Tab:
         found: list[dict[str, Any]] = self.page.locator("#signals").evaluate(pick)
         return found
 
-    def wait_for_traces(self, ready: Any, looks: int = 1200) -> list[dict[str, Any]]:
-        """Wait until the traces of the plot are `ready`."""
-        found = []
-        for _ in range(looks):
+    def wait_for_traces(self, ready: Any, patience: float = 120.0) -> list[dict[str, Any]]:
+        """Wait until the traces of the plot are `ready`, for `patience` [s]: a look at long traces takes a while."""
+        found, end = [], time.monotonic() + patience
+        while time.monotonic() < end:
             found = self.traces() if self.page.locator("#signals .main-svg").count() else []
             if ready(found):
                 return found
@@ -73,7 +74,7 @@ class Tab:
         for _ in range(12):
             self.page.locator("#signals .nsewdrag").first.dblclick()
             with suppress(AssertionError):
-                self.wait_for_traces(ready, looks=100)
+                self.wait_for_traces(ready, patience=5.0)
                 return
         self.wait_for_traces(ready)
 
