@@ -46,10 +46,9 @@ def simplest(base: BaseFit, held: BaseFit, candidates: Sequence[Candidate]) -> C
     best = next((one for one in candidates if not one.objections), None)
     if best is None:
         return None
-    for one in candidates:
-        other = replace(one, contained=True) if one.partial else one
-        little = _between(held, best, other) < MATERIAL
-        if one.name in _contained(base, best) and not other.objections and (little or _tied(best, other)):
+    simpler = [one for one in candidates if one.name in _contained(base, best)]
+    for other in (replace(one, contained=True) if one.partial else one for one in simpler):
+        if not other.objections and (_tied(best, other) or _between(held, best, other) < MATERIAL):
             return other
     return best
 

@@ -89,26 +89,30 @@ class Scoring:
         held-out runs is ln p(all) - ln p(training), base parameters at their best for each: what training hardly
         determines, such as friction at a place that it passed once, must not decide there.
         """
-        first, fitted = self._climb(model, fits, fitted, parts=1)
-        whole, further = self._climb(model, fits, fitted, parts=2)
-        known = strain(fitted[2] + fits[0].offset) - strain(further[2] + fits[0].offset)
-        return np.array([first[0], float(whole.sum() - first[0]) + known]), fitted
+        alone, found, fitted = self._climb(model, fits, fitted, parts=1)
+        together, _, _ = self._climb(model, fits, fitted, parts=2)
+        return np.array([found[0], together - alone]), fitted
 
-    def _climb(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> tuple[Array, Fit]:
-        """The log evidence (parts,) of a fit whose base parameters are best for training runs, or for both `parts`."""
-        found = self.evidence(model, *fitted[:parts])
+    def _climb(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> tuple[float, Array, Fit]:
+        """The fit whose base parameters are best for training runs, or for both `parts`.
+
+        Returns ln p with the priors of the base parameters, the log evidence (parts,) without them, and the fit.
+        """
+
+        def valued(one: Fit) -> tuple[float, Array, Fit]:
+            found = self.evidence(model, *one[:parts])
+            return float(found.sum()) - strain(one[2] + fits[0].offset), found, one
+
+        best = valued(fitted)
         for _ in range(STEPS):
-            step = self._step(model, fits, fitted, parts)
-            tried = [moved(fitted, fits, share * step) for share in SHARES]
-            each = [self.evidence(model, *one[:parts]) for one in tried]
-            value = [float(e.sum()) - strain(one[2] + fits[0].offset) for e, one in zip(each, tried, strict=True)]
-            k, before = int(np.argmax(value)), float(found.sum()) - strain(fitted[2] + fits[0].offset)
-            if not value[k] > before:
+            step = self._step(model, fits, best[2], parts)
+            tried = max((valued(moved(best[2], fits, share * step)) for share in SHARES), key=lambda one: one[0])
+            if not tried[0] > best[0]:
                 break
-            found, fitted = each[k], tried[k]
-            if value[k] < before + LITTLE:
+            gained, best = tried[0] - best[0], tried
+            if gained < LITTLE:
                 break
-        return found, fitted
+        return best
 
     def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> Array:
         """The step (free,) of base parameters by generalised least squares on the first `parts` of the runs."""
