@@ -1,6 +1,7 @@
 """Least-squares polynomials along evenly sampled signals (A. Savitzky and M. J. E. Golay, Anal. Chem. 36, 1964).
 
-As `savgol_coeffs` and `savgol_filter` of scipy.signal, to the bit: importing that takes half a second of every start.
+As `savgol_coeffs` and `savgol_filter` of scipy.signal, to the last digits: importing that takes half a second of every
+start.
 """
 
 from math import factorial
