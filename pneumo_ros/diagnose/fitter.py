@@ -108,10 +108,10 @@ class Fitter:
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
             return model
-        least, sizes = self.score(model) - AS_MUCH, [c for c in own if c.is_size and model[c.name] != c.neutral]
+        sizes = [c for c in own if c.is_size and model[c.name] != c.neutral]
         for size in sorted(sizes, key=lambda c: model.specification(c.name).default != c.neutral):
             simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
-            if self.score(simpler) > least:
+            if self.gain(simpler, model) > -AS_MUCH:
                 return simpler
         return model
 
@@ -123,11 +123,15 @@ class Fitter:
         larger = self.refit(model.with_effects([*model.effects, name], values), fixed=values)
         return self._at_best(model) - self.likelihood(larger, values)
 
-    def score(self, model: Model) -> float:
-        """Log evidence of all recordings and of the priors of the parameters."""
+    def gain(self, new: Model, old: Model) -> float:
+        """Log evidence of all recordings and of the priors of the parameters that one model gains over another."""
         parts = (self.train, self.held) if self._held_runs else (self.train, self.train)
-        found = Scoring(*parts).evidence(model, *(part.residual(model) for part in parts))
-        return float(found.sum() if self._held_runs else found[0]) - strain(self.known(model).offset(model))
+        without, residuals = ([part.residual(model) for part in parts] for model in (old, new))
+        scoring = Scoring(*parts)
+        scoring.measure(old, *without)
+        gained = scoring.evidence(new, *residuals) - scoring.evidence(old, *without)
+        strained = strain(self.known(new).offset(new)) - strain(self.known(old).offset(old))
+        return float(gained.sum() if self._held_runs else gained[0]) - strained
 
     def likelihood(self, model: Model, fixed: Collection[str] = ()) -> float:
         """Log likelihood of the training evidence and of the priors of the parameters except `fixed`.

@@ -32,6 +32,7 @@ def judged(
     scoring, fits, found = Scoring(base.evidence, held.evidence), (base, held), list[Candidate]()
     if not hypotheses:
         return found
+    scoring.measure(base.everything, nothing.residual, held.residual)
     without, alone = scoring.best(base.everything, fits, (nothing.residual, held.residual, nothing.shift))
     for h, r in zip(hypotheses, residuals, strict=True):
         model = base.everything.with_parameters(h.values)

@@ -1,12 +1,12 @@
 """One score for models: the log evidence of recordings, in nats, by which effects are added or not.
 
 The residual of an equation along a run, in the unit of the equation, is d + n. n is the noise of the sensors, known for
-each window and model and, as a whole, to a tenth. d is what no model has: a stationary process of Ornstein and
-Uhlenbeck, of deviation delta and correlation time tau, both of the greatest likelihood under each model. So hundreds of
-correlated windows where the shape of a law is wrong count as few. Beyond three deviations the density of an innovation
-falls by a power, as that of Student does: single wild windows say little. The likelihood is that of a scalar Kalman
-filter (Harvey 1989, Forecasting, structural time series models and the Kalman filter, 3.4), its gain lowered at wild
-windows (Masreliez and Martin 1977).
+each window and model and, as a whole, to 5 %, alike for all models that are compared. d is what no model has: a
+stationary process of Ornstein and Uhlenbeck, of deviation delta and correlation time tau, both of the greatest
+likelihood under each model. So hundreds of correlated windows where the shape of a law is wrong count as few. Beyond
+three deviations the density of an innovation falls by a power, as that of Student does: single wild windows say little.
+The likelihood is that of a scalar Kalman filter (Harvey 1989, Forecasting, structural time series models and the Kalman
+filter, 3.4), its gain lowered at wild windows (Masreliez and Martin 1977).
 
 Windows of one width overlap by three quarters: every second one is nearly independent, so both halves count half. An
 equation seen through windows of two widths counts half by each.
@@ -30,13 +30,16 @@ Array = NDArray[np.float64]
 TAIL = 3.0  # deviations: beyond, an innovation counts by its logarithm
 SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over the median noise
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
-NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise, which is known to a tenth
+NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise
 STEPS, SHARES, LITTLE = 3, (1.0, 0.3), 0.5  # of base parameters: most steps, shares tried, least gain for another
-EXACT = 3  # parabolas, each on a fifth of the width
+EXACT = 4  # parabolas, each closer to the largest value
+FINE, REACH = 0.01, 4.0  # of the scale of the noise: a step of parabolas; and how many of them at a time
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
 MARGIN = 8.0  # nats that an effect must gain: the logarithm of some thirty candidates, and 5 for odds of 150 to 1
 WRONG_LINE = MARGIN  # a line of the machine file that is wrong: no more than an effect, so that one such line is none
 EVEN, SAFE = 1e-9, 1e-200  # share by which even gaps differ by rounding; products are finite from here to the inverse
+STATED = 0.05  # deviation of the noise from what recordings state
+AMPLIFIED = 0.01  # share to which it is known how much a model amplifies the noise, beside another one
 BREAKAWAY_NOISE = 0.5  # of the stated spread of breakaways, which is larger than their scatter
 
 
@@ -67,6 +70,12 @@ class Scoring:
     def __init__(self, train: Evidence, held: Evidence) -> None:
         self.parts = (train, held)
         self.names = tuple(dict.fromkeys([*train.names, *held.names]))
+        self.scales = dict[str, float]()  # of the noise, by family; found for each model where there is none
+
+    def measure(self, model: Model, *residuals: Array) -> None:
+        """Take the scale of the sensors' noise from what `model` leaves: it is the same for models compared to it."""
+        self.scales = {}
+        self.scales = {family.name: family.scale for family in self._families(model, residuals)}
 
     def evidence(self, model: Model, *residuals: Array) -> Array:
         """Log evidence (parts,) of the residuals over noise that `model` leaves in training, and in held-out runs.
@@ -79,7 +88,7 @@ class Scoring:
         """The families of the training runs' residuals, or of those and the held-out runs'."""
         parts = self.parts[: len(residuals)]
         levels = [part.noise_of(model) for part in parts]
-        return [_Family(name, parts, residuals, levels) for name in self.names]
+        return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
 
     def best(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> tuple[Array, Fit]:
         """The log evidence (2,) of a fit, its base parameters moved to where the training runs' evidence is largest.
@@ -128,8 +137,14 @@ class _Family:
     """The windows of one family that a model leaves, in training runs, or in those and in held-out runs."""
 
     def __init__(
-        self, name: str, parts: Sequence[Evidence], residuals: Sequence[Array], levels: Sequence[Array]
+        self,
+        name: str,
+        parts: Sequence[Evidence],
+        residuals: Sequence[Array],
+        levels: Sequence[Array],
+        usual: float | None,
     ) -> None:
+        self.name, self.usual, self.known = name, usual or 1.0, AMPLIFIED if usual else STATED
         self.single = name == "breakaway"  # without correlation
         self.weight = 1.0 if self.single else 0.25
         self.series: list[list[tuple[Array, ...]]] = []
@@ -147,7 +162,17 @@ class _Family:
 
     def evidence(self) -> Array:
         """Log evidence (parts,) at the discrepancy and the noise of the greatest likelihood."""
-        return self._likelihood(*self._best())[1] if self.median else np.zeros(len(self.series))
+        if not self.median:
+            return np.zeros(len(self.series))
+        best = self._best()
+        found: Array = self._likelihood(*best)[1].copy()
+        found[0] -= self._strain(best[2])
+        return found
+
+    @property
+    def scale(self) -> float:
+        """Of the noise, at the greatest likelihood."""
+        return self._best()[2] if self.median else 1.0
 
     def normal(self, part: int, slopes: Array) -> tuple[Array, Array]:
         """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in a part of the runs."""
@@ -169,24 +194,28 @@ class _Family:
             tried = [(_peak(SIZES, partial(self._whole, time=time, scale=scale)), time, scale) for time in times]
             size, time, _ = max(tried, key=lambda at: self._whole(*at))
             times, best = (time,), (size, time, _peak(scales, partial(self._whole, size, time)))
-        return best if self.single else (*best[:2], self._exact(*best))
+        return best if self.single else self._exact(*best)
 
-    def _exact(self, size: float, time: float, scale: float) -> float:
-        """The scale of the greatest likelihood between the steps of NOISE, by parabolas.
+    def _exact(self, size: float, time: float, scale: float) -> tuple[float, float, float]:
+        """Size of the discrepancy and scale of the noise of the greatest likelihood, between the steps of the options.
 
-        A step changes the likelihood by next to nothing, and what it leaves without the cost of noise by ten nats.
+        Both together: a fast discrepancy and more noise nearly are the same, and differ by hundreds of nats in what is
+        left without the cost of noise.
         """
-        width = NOISE[1] - NOISE[0]
-        for _ in range(EXACT):
-            low, here, high = (self._whole(size, time, scale + k * width) for k in (-1, 0, 1))
-            bent = low - 2.0 * here + high
-            move = 0.5 * (low - high) / bent if bent < 0.0 else 0.0
-            scale = min(max(scale + width * min(max(move, -1.0), 1.0), NOISE[0]), NOISE[-1])
-            width *= 0.2
-        return scale
+
+        def at(move: Array) -> tuple[float, float, float]:
+            larger = float(np.exp(np.log(2.0) * move[1])) if size > 0.0 else 1.0
+            scaled = scale + float(move[0]) * FINE
+            return size * larger, time, min(max(scaled, NOISE[0]), NOISE[-1])
+
+        return at(_top(lambda move: self._whole(*at(move)), 2 if size > 0.0 else 1))
 
     def _whole(self, size: float, time: float, scale: float) -> float:
-        return float(self._likelihood(size, time, scale)[0].sum())
+        return float(self._likelihood(size, time, scale)[0].sum()) - self._strain(scale)
+
+    def _strain(self, scale: float) -> float:
+        """Nats by which a scale of the noise is less probable than the usual one."""
+        return 0.0 if self.single else 0.5 * ((scale / self.usual - 1.0) / self.known) ** 2
 
     def _likelihood(self, size: float, time: float, scale: float) -> tuple[Array, Array]:
         """Log likelihood (parts,) of training and held-out runs; and the same without what noise alone costs."""
@@ -213,6 +242,26 @@ def _peak(options: Sequence[float], value: Callable[[float], float]) -> float:
         else:
             high -= third
     return max(options[low : high + 1], key=value)
+
+
+def _top(value: Callable[[Array], float], count: int) -> Array:
+    """Where near 0 (count,) the value is largest, by parabolas through points about one apart, then closer ones."""
+    at, width = np.zeros(count), 1.0
+    for _ in range(EXACT):
+        steps = width * np.eye(count)
+        here, up = value(at), [value(at + step) for step in steps]
+        down = [value(at - step) for step in steps]
+        bent = np.diag([2.0 * here - one - other for one, other in zip(up, down, strict=True)])
+        if count == 2:
+            bent[0, 1] = bent[1, 0] = up[0] + up[1] - here - value(at + steps[0] + steps[1])
+        slope = 0.5 * (np.array(up) - np.array(down))
+        if np.all(np.linalg.eigvalsh(bent) > 0.0):
+            move = np.linalg.solve(bent, slope)
+        else:
+            move = np.sign(slope)
+        tried = at + width * move / max(1.0, float(np.abs(move).max()) / REACH)
+        at, width = (tried, 0.3 * width) if value(tried) >= here else (at, 0.3 * width)
+    return at
 
 
 @entry  # numba finds the types by the call

@@ -87,7 +87,7 @@ class Search:
         # results are kept, as they are needed again
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
         self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
-        self.slips = lru_cache(2)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
+        self.slips = lru_cache(1)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
         self.ranking = lru_cache(1)(self._rank)
 
     def predicted(self, model: Model) -> dict[str, float]:
@@ -272,7 +272,7 @@ class Search:
         if strain(self.fitter.known(model).offset(model)) < STRAINED:
             return model
         new = self.fitter.refit(model)
-        return new if self.fitter.score(new) > self.fitter.score(model) else model
+        return new if self.fitter.gain(new, model) > 0.0 else model
 
     def hypotheses(self, base: BaseFit) -> tuple[list[Hypothesis], list[Hypothesis]]:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
