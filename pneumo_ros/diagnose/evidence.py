@@ -5,10 +5,11 @@ Families: the momentum while the piston slides [N], in windows of 100 and 40 ms;
 The equations are those of `equations.equations`; each residual has its noise from the sensors alone.
 """
 
+import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,10 +108,25 @@ class Evidence:
         `ranking`: only as exact as the ranking of candidates needs, in less time.
         """
         longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # else a long run ends last, alone
-        with ThreadPoolExecutor(threads) as pool:
-            made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
-        whole = np.concatenate([made[part].result() for part in self.by_run], axis=1) / self.noise
-        return np.asarray(np.nan_to_num(whole, nan=1e9, posinf=1e9, neginf=-1e9))
+        pool = _pool(os.getpid(), threads)
+        made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
+        whole, at = np.empty((len(parameters), len(self.noise))), 0
+        try:
+            for part in self.by_run:  # each is let go when it is copied: many variants of long recordings are large
+                values = made.pop(part).result()
+                whole[:, at : at + values.shape[1]] = values
+                at += values.shape[1]
+        finally:
+            for rest in made.values():  # after an error or at the end of the time
+                rest.cancel()
+        whole /= self.noise
+        return np.asarray(np.nan_to_num(whole, copy=False, nan=1e9, posinf=1e9, neginf=-1e9))
+
+
+@cache
+def _pool(process: int, threads: int) -> ThreadPoolExecutor:
+    """Threads that are kept, as each new one leaves memory behind; each process has its own."""
+    return ThreadPoolExecutor(threads)
 
 
 def without_states(model: Model) -> Model:

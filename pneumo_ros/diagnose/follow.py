@@ -21,7 +21,7 @@ from pneumo_ros.runs.sensors import driven_lanes
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-LANES_AT_ONCE = 32  # parameter vectors driven at once: as many as fit in memory together
+LANES_AT_ONCE = 16  # parameter vectors driven at once: more take memory, and no less time
 QUICK = 2  # parts of a sample in quick evaluations: their errors cancel in differences of two variants
 SHORT = 1.01e-3  # s: so short a sample is one part when candidates are ranked; the error is 1 % of an effect
 LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
