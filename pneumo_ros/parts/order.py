@@ -57,6 +57,8 @@ def order_of(
             "(or C, Kv, Cv)"
         )
     known = {**rules(), **_valve(valve, flow), **{name: cylinder[name] for name in DIMENSIONS}, **use}
+    if ways and ways != REGULATOR:  # open or closed: its flow is the published one, however it opens
+        known["linearity"] = _exact(known["linearity"])
     return Order(known, opening == "switched", flow, ways)
 
 

@@ -1,15 +1,16 @@
-"""How long a stroke takes: predicted by a machine, and the band that its stated uncertainty leaves."""
+"""How long a stroke takes: predicted by a machine, and the band that the intervals of its figures leave."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.parts import assemble
+from pneumo_ros.parts.design import Design
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import SECOND, mirrored
 
 Array = NDArray[np.float64]
 ALMOST = 0.98  # of the stroke counts as the whole: what remains is the end's affair
 LIMIT = 5.0  # s; a longer stroke counts as infinite
-LEAST = 0.1  # of its value: friction may be far less than a rule says, but it does not vanish
 SAMPLE, STEP = 1e-3, 1e-4  # s
 
 
@@ -37,34 +38,29 @@ def stroke_times(model: Model, signal: float, parameters: Array | None = None) -
     return np.where(arrived.any(axis=1), (arrived.argmax(axis=1) + 1) * SAMPLE, np.inf)
 
 
-def drawn(model: Model, count: int, seed: int = 0) -> Array:
-    """Parameter vectors (count, parameters) drawn from normal distributions of the model's stated uncertainty.
+def drawn(made: Design, count: int, seed: int = 0) -> Array:
+    """Parameter vectors (count, parameters) of machines whose figures lie anywhere in the intervals of their sources.
 
-    A size that cannot be negative keeps at least a tenth of its value, a chamber of its volume beyond the end of the
-    stroke; what leaves its range is put at the end.
+    The parameters of a machine are drawn together: a valve of published flow that opens more steeply has less of it at
+    signals beyond the full one. Their deviations by themselves do not say so.
     """
-    names, random = list(model.parameters), np.random.default_rng(seed)
-    q = np.tile(model.values, (count, 1))
-    for name, deviation in model.uncertainty.items():
-        one, value, k = model.specification(name), model[name], names.index(name)
-        least = max(one.low, _least(model, name)) if one.low >= 0.0 else one.low
-        q[:, k] = np.clip(value + deviation * random.standard_normal(count), least, one.high)
-    return q
+    names, random = list(made.model.parameters), np.random.default_rng(seed)
+    ends = [(made.model.specification(n).low, made.model.specification(n).high) for n in names]
+    low, high = np.array(ends).T
+    found = np.tile(made.model.values, (count, 1))
+    for row in found:
+        figures = {key: float(random.uniform(one.low, one.high)) for key, one in made.order.figures.items()}
+        for name, value in assemble.parameters(made.order, made.order.nominal | figures).items():
+            if name in made.model.uncertainty:
+                row[names.index(name)] = value
+    return np.clip(found, low, high)
 
 
-def _least(model: Model, name: str) -> float:
-    swept = 0.0
-    for chamber in model.chambers:
-        if name == chamber.volume:
-            swept = 0.5 * model["piston.stroke"] * model[chamber.area]
-    return swept + LEAST * (model[name] - swept)
-
-
-def band(model: Model, signal: float, count: int = 400, seed: int = 0) -> tuple[float, float, float]:
-    """Predicted stroke time [s] at a full `signal` [V], and the ends of its 95 % band."""
-    times = np.sort(stroke_times(model, signal, drawn(model, count, seed)))
+def band(made: Design, signal: float, count: int = 400, seed: int = 0) -> tuple[float, float, float]:
+    """Predicted stroke time [s] at a full `signal` [V], and the ends of the band that holds 95 % of `drawn`."""
+    times = np.sort(stroke_times(made.model, signal, drawn(made, count, seed)))
     low, high = times[round(0.025 * (count - 1))], times[round(0.975 * (count - 1))]
-    return float(stroke_times(model, signal)[0]), float(low), float(high)
+    return float(stroke_times(made.model, signal)[0]), float(low), float(high)
 
 
 def _closed(model: Model) -> float:

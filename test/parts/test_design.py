@@ -11,7 +11,7 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.parts.design import Design, Wishes, design
 from pneumo_ros.parts.figure import Figure
 from pneumo_ros.parts.shelf import load_shelf
-from pneumo_ros.parts.strokes import band, stroke_times
+from pneumo_ros.parts.strokes import band, drawn, stroke_times
 from pneumo_ros.plant.effects.valve.choked_flow import NORMAL_DENSITY
 
 COULOMB, STATIC = "lugre_friction.coulomb_friction", "lugre_friction.static_friction"
@@ -197,6 +197,31 @@ def test_a_stroke_takes_as_long_as_its_machine_says() -> None:
     y = model.simulate(np.full(1000, 10.0), state)[:, model.states.index("y")]
     single = 1e-3 * (1 + int(np.argmax(y >= 0.125 - 0.02 * 0.25)))
     assert stroke_times(model, 10.0)[0] == pytest.approx(single, abs=1.5e-3)
-    out, low, high = band(model, 10.0, 64)
+    out, low, high = band(found, 10.0, 64)
     assert low < out < high < 2.0 * out
     assert stroke_times(model, 10.0)[0] != stroke_times(model, -10.0)[0]
+
+
+def test_the_flow_at_full_signal_is_the_published_one_however_the_valve_opens() -> None:
+    """A valve of 500 l/min (10 %) that opens with an argument of 0.5 to 20: strokes as long as its flow says."""
+    found = made(valve=None, valve_flow="500 l/min")
+    names = list(found.model.parameters)
+    gain, size = (
+        drawn(found, 200)[:, names.index(n)] for n in ("arctan_flow.voltage_gain", "choked_flow.conductance_filling")
+    )
+    full = size * np.arctan(gain * 9.8) * 2.0 / np.pi
+    assert np.ptp(gain) > 1.5
+    assert np.ptp(full) < 0.35 * full.mean()  # critical ratio and scatter, not the factor of three of C
+    assert np.ptp(size) > 1.0 * full.mean()
+    out, low, high = band(found, 10.0, 64)
+    assert 0.8 * out < low < out < high < 1.5 * out
+
+
+def test_an_on_off_valve_is_open_or_closed() -> None:
+    """How a proportional valve opens says nothing of it: its flow is as sure as the published one."""
+    found = made(valve="festo-mh2-ms1h", cylinder="iso6432-16-100", mass="0.5")
+    uncertain = found.model.uncertainty
+    size = "choked_flow.conductance_filling"
+    assert "arctan_flow.voltage_gain" not in uncertain
+    assert uncertain[size] < 0.1 * found.model[size]
+    assert uncertain["on_off_valves.switch_on"] > 0.0

@@ -114,5 +114,5 @@ def _predicted(made: "Design") -> dict[str, Any]:
     """Stroke times [s] with their bands, out and back."""
     from pneumo_ros.parts.strokes import band
 
-    each = {way: band(made.model, volts) for way, volts in zip(("out", "back"), made.signal, strict=True)}
+    each = {way: band(made, volts) for way, volts in zip(("out", "back"), made.signal, strict=True)}
     return {way: {"value": value, "low": low, "high": high} for way, (value, low, high) in each.items()}
