@@ -8,8 +8,8 @@ from typing import Any
 
 from pneumo_ros.command.conducting import conduct
 from pneumo_ros.command.console import Console
-from pneumo_ros.commission.moves import other
 from pneumo_ros.commission.performing import Perform, Performed
+from pneumo_ros.commission.safe import may_be_tried_again
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.experiment.programme import Programme
 
@@ -45,7 +45,7 @@ def live(folder: Path, settings: Mapping[str, object], namespace: str, console: 
                 raise InterruptedCommissioningError(
                     f"interrupted; the same command goes on after {folder / name} where it stopped"
                 )
-            if code and not result.get("trials") and other(str(result.get("reason", ""))) is None:
+            if code and not result.get("trials") and not may_be_tried_again(str(result.get("reason", ""))):
                 raise DataError(str(result.get("reason", "the experiment failed")))
         else:
             console.note(f"{programme.experiment}: recorded before in {place}")
@@ -63,7 +63,7 @@ def _kept(place: Path) -> dict[str, Any] | None:
         result: dict[str, Any] = json.loads((place / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return result if result.get("complete") or other(str(result.get("reason", ""))) is not None else None
+    return result if result.get("complete") or may_be_tried_again(str(result.get("reason", ""))) else None
 
 
 def _aside(place: Path) -> None:

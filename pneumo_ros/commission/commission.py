@@ -9,15 +9,15 @@ import numpy as np
 from pneumo_ros.commission import moves
 from pneumo_ros.commission.information import MINUTE, Knowledge, Told, knowledge, shrinkage, told
 from pneumo_ros.commission.performing import Perform, Performed
+from pneumo_ros.commission.safe import LIMIT, again, may_be_tried_again, safe, unmoved
 from pneumo_ros.commission.settling import settled
 from pneumo_ros.commission.simulated import SimulatedRig
-from pneumo_ros.commission.wiring import UnmovedError, Wired, as_run, find_wiring
+from pneumo_ros.commission.wiring import MOVED, UnmovedError, Wired, as_run, find_wiring
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.errors import DataError, NumericalError, UsageError
 from pneumo_ros.experiment.beside import counted_from
 from pneumo_ros.experiment.plumbing import plumbing
 from pneumo_ros.experiment.programme import Programme
-from pneumo_ros.experiment.room import dead_zone
 from pneumo_ros.experiment.whitened import Noise
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import centred, closed_signal
@@ -108,9 +108,10 @@ class Commissioning:
 
         Where that does not decide, and what is left are mirror images, which move alike, the static trials follow.
         """
+        ramps = None
         for stronger in STRONGER:
-            programme = counted_from(plumbing(centred(self.model), stronger=stronger), closed_signal(self.model))
-            done = self._performed(programme, "wiring")
+            ramps = self._ramps(stronger, ramps)
+            done = self._performed(ramps, "wiring")
             self.moves.append(Move("wiring", _names(done), done.seconds))
             try:
                 self.wired = find_wiring(done.recordings, self.model, self.words, self.sensors)
@@ -120,7 +121,7 @@ class Commissioning:
                     raise
                 self.tell(f"wiring: {str(error).partition(':')[0]}; tried again with larger ones")
         self._look(done)
-        static = None if self.wired.certain else moves.safe(moves.static(self.known.model), self._possible())
+        static = None if self.wired.certain else self._safe(moves.static(self.known.model))
         if static is not None:
             self.tell("wiring: another one explains this nearly as well; static trials will tell")
             self._static = self._performed(static, "static")
@@ -128,6 +129,20 @@ class Commissioning:
             self.wired = find_wiring(recordings, self.model, self.words, self.sensors)
             self._look(done)
         return self.wired
+
+    def _ramps(self, stronger: float, before: Programme | None) -> Programme:
+        """The plumbing trial, safe for machines as they may be, or at least for that of the data sheet.
+
+        before: ramps at which the piston stayed, and so do machines that may be; after them, only larger ones help.
+        """
+        ramps = counted_from(plumbing(centred(self.model), stronger=stronger), closed_signal(self.model))
+        least = before.trials[0].voltage.largest if before else 0.0
+        possible = unmoved(before, self._possible(), MOVED) if before else self._possible()
+        for machines in (possible, [self.known.model]):
+            made = safe(ramps, machines) if machines else None
+            if made is not None and made.trials[0].voltage.largest > least:
+                return made
+        raise DataError(f"ramps above {least:g} V may take the piston from mid stroke to an end stop")
 
     def _look(self, done: Performed) -> None:
         """Know the machine by the plumbing trial: how easily it moves."""
@@ -145,7 +160,7 @@ class Commissioning:
             if name == "static" and self._static is not None:
                 self._learn(name, self._static)
                 continue
-            programme = moves.safe(make(self.known.model), self._possible())
+            programme = self._safe(make(self.known.model))
             if programme is None:
                 self.tell(f"{name}: left out, as even its smallest voltages may take the piston to an end stop")
                 continue
@@ -158,7 +173,7 @@ class Commissioning:
         best: tuple[float, Programme | None, Told] = (0.0, None, self.known.told)
         possible = self._possible()
         for candidate in moves.candidates(self.known.model, seed=len(self.moves)):
-            programme = moves.safe(candidate, possible)
+            programme = safe(candidate, possible, [self._stands()])
             predicted = self._predicted(programme) if programme else None
             if predicted is not None and (share := shrinkage(self.known.told, *predicted)) > best[0]:
                 best = share, programme, predicted[0]
@@ -198,6 +213,13 @@ class Commissioning:
         known = self.known
         return [known.model, *moves.drawn(known.model, known.deviations, moves.DRAWN, len(self.moves))]
 
+    def _stands(self) -> float:
+        """Where the piston stands [m], mid stroke where nothing was recorded yet."""
+        return float(self.runs[-1].position[-1]) if self.runs else 0.0
+
+    def _safe(self, programme: Programme) -> Programme | None:
+        return safe(programme, self._possible(), [self._stands()])
+
     def _take(self, name: str, programme: Programme) -> None:
         self._learn(name, self._performed(programme, name))
 
@@ -209,7 +231,7 @@ class Commissioning:
         self.known = knowledge(self.model, self.runs, self.known.model)
 
     def _performed(self, programme: Programme, name: str) -> Performed:
-        """Performed, with smaller voltages where a limit was reached, and larger ones where the piston did not move.
+        """Performed, with smaller voltages where a limit was reached, and larger ones where the piston did not return.
 
         DataError where the plant ends it otherwise.
         """
@@ -217,22 +239,27 @@ class Commissioning:
         recordings: list[Recording] = []
         seconds = 0.0
         tried = programme
-        for again in range(1 + AGAIN):
-            folder = f"{len(self.moves):02d}_{name}" + (f"_{again}" if again else "")
+        for number in range(1 + AGAIN):
+            folder = f"{len(self.moves):02d}_{name}" + (f"_{number}" if number else "")
             done = self.perform(tried, words, folder)
             seconds += done.seconds
             recordings += done.recordings
             if done.complete:
                 return Performed(tuple(recordings), seconds)
-            share = moves.other(done.reason)
-            if share is None:
+            if not may_be_tried_again(done.reason):
                 raise DataError(f"{name}: {done.reason}")
-            self.tell(f"{name}: {done.reason}; tried again with {'smaller' if share < 1.0 else 'larger'} voltages")
-            left = tried.trials[len(done.recordings) :]
-            tried = moves.smaller(replace(tried, trials=left), dead_zone(centred(self.known.model)), share)
+            left = replace(tried, trials=tried.trials[len(done.recordings) :])
+            other = again(left, done.reason, self._possible())
+            if other is None:
+                self.tell(f"{name}: {done.reason}; no other voltages are safe")
+                break
+            self.tell(
+                f"{name}: {done.reason}; tried again with {'smaller' if LIMIT in done.reason else 'larger'} voltages"
+            )
+            tried = other
         if recordings:
             return Performed(tuple(recordings), seconds, done.reason)
-        raise DataError(f"{name}: {done.reason}, after {AGAIN} trials with other voltages")
+        raise DataError(f"{name}: {done.reason}; tried {number + 1} times")
 
     def _run(self, recording: Recording) -> Run:
         return as_run(recording, self.model, self.wired.words)

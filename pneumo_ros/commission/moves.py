@@ -1,17 +1,15 @@
-"""Moves that a commissioning may choose from, made safe for what is not known yet of the machine."""
+"""Moves that a commissioning may choose from, and machines as they may be."""
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.errors import NumericalError, UsageError
+from pneumo_ros.errors import UsageError
 from pneumo_ros.experiment import constant_voltage, excitation, telling
 from pneumo_ros.experiment.beside import counted_from
-from pneumo_ros.experiment.programme import Programme
-from pneumo_ros.experiment.rehearsal import rehearse
+from pneumo_ros.experiment.programme import MAX_VOLTAGE, Programme
 from pneumo_ros.experiment.room import dead_zone
 from pneumo_ros.experiment.voltages import Constant, Ramps, Steps, Sweep, Voltage
 from pneumo_ros.plant import Model
@@ -23,14 +21,9 @@ Dead = tuple[float, float]  # V from closed at which the valve begins to open, r
 
 SECONDS = 8.0  # of a move
 SLOW, MODERATE, FAST = 0.12, 0.5, 1.5  # V beyond the dead zone
-MORE = 1.8  # factor of the voltages beyond the dead zone where the piston did not move
 DRAWN = 4  # machines, as they may be, that a move is rehearsed on
-LESS, FEWEST = 0.6, 0.05  # a move that would leave the limits is tried with this share of its voltages; smallest share
-ROOMS = (1.0, 0.6, 0.35)  # of the way between the limits, where less voltage does not help: a jump takes its way
 VAGUE = 0.3  # of its value: a deviation beyond which a positive parameter is known by a factor only
 REDRAWN = 20  # times that a machine which cannot be is drawn anew
-CLEAR = 0.95  # of the way to the end stop, beyond which no rehearsed piston may come
-LATE = 0.012  # s between two decisions of a rehearsal: a rig's commands come as late
 PATIENCE = 6.0  # s until a piston breaks away
 
 
@@ -105,31 +98,6 @@ def _around(middle: Array, wide: Array, share: Array, low: Array, high: Array) -
     return np.clip(np.where(by_factor, middle * factor, middle + wide * share), low, high)
 
 
-def safe(programme: Programme, machines: Sequence[Model]) -> Programme | None:
-    """The programme with voltages small enough that none of `machines` reaches an end stop; None where none are.
-
-    They keep clear of it if they can. A piston whose friction at rest is a multiple of that in motion jumps as far at
-    any voltage, and hardly open valves brake it less: it turns nearer to mid stroke.
-    """
-    dead = narrowest(machines)
-    shares = [LESS**k for k in range(1 + int(np.log(FEWEST) / np.log(LESS)))]
-    for clear, room, share in itertools.product((CLEAR, 1.0), ROOMS, shares):
-        tried = replace(smaller(programme, dead, share), low=room * programme.low, high=room * programme.high)
-        if not any(_reaches_end(tried, machine, clear) for machine in machines):
-            return tried
-    return None
-
-
-def _reaches_end(programme: Programme, machine: Model, clear: float) -> bool:
-    """Whether the piston goes beyond a share of the way to an end stop, where commands come late as on a rig."""
-    turns = max(abs(programme.low), abs(programme.high))  # where a trial turns: short of the end, however near
-    nearer = replace(programme, end=max(clear * programme.end, 0.5 * (turns + programme.end)))
-    try:
-        return "end stop" in rehearse(nearer, machine, sample=LATE).aborted
-    except NumericalError:  # stiffer than the steps of the integration: no machine to plan for
-        return False
-
-
 def narrowest(machines: Sequence[Model]) -> Dead:
     """The narrowest dead zone of all machines, each side by itself: less than that moves none of them."""
     right, left = zip(*(dead_zone(centred(one)) for one in machines), strict=True)
@@ -141,14 +109,15 @@ def smaller(programme: Programme, dead: Dead, share: float) -> Programme:
     if share == 1.0:
         return programme
     trials = tuple(replace(one, voltage=_less(one.voltage, dead, share)) for one in programme.trials)
+    return replace(returning(programme, dead, share), trials=trials)
+
+
+def returning(programme: Programme, dead: Dead, share: float) -> Programme:
+    """The programme with `share` of the voltages beyond the dead zone that take the piston back, trials as they are."""
     right = _less(Constant(programme.return_right), dead, share).largest
     left = _less(Constant(-programme.return_left), dead, share).largest
-    return replace(programme, trials=trials, return_right=right, return_left=left)
-
-
-def other(reason: str) -> float | None:
-    """The share of its voltages with which to try a programme again that was ended for `reason`; None: not at all."""
-    return LESS if "end stop" in reason else MORE if "stays at" in reason else None
+    most = MAX_VOLTAGE - abs(programme.closed)
+    return replace(programme, return_right=min(right, most), return_left=min(left, most))
 
 
 def _less(voltage: Voltage, dead: Dead, share: float) -> Voltage:

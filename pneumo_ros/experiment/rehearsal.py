@@ -19,14 +19,15 @@ EVERY = 0.1  # s between two points of the path that is kept
 class Rehearsal:
     """The course of a programme on a model.
 
-    outcomes: one per trial; duration [s] and way [m] in total; path: (time, position) every 0.1 s; commands: (time,
-    voltage) at each change; recorded: (begin, end) of each trial; aborted: why it had to be stopped, empty if it went
-    well.
+    outcomes: one per trial; duration [s] and way [m] in total; farthest [m] from mid stroke; path: (time, position)
+    every 0.1 s; commands: (time, voltage) at each change; recorded: (begin, end) of each trial; aborted: why it had to
+    be stopped, empty if it went well.
     """
 
     outcomes: tuple[TrialResult, ...]
     duration: float
     way: float
+    farthest: float
     path: tuple[tuple[float, float], ...]
     commands: tuple[tuple[float, float], ...]
     recorded: tuple[tuple[float, float], ...]
@@ -45,7 +46,7 @@ def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: 
     check_one_command(model)
     plant = Stepper(model, model.state(y=position), sample_time=sample)
     conductor = Conductor(programme)
-    path, commands, way = [(0.0, position)], [(0.0, programme.closed)], 0.0
+    path, commands, way, farthest = [(0.0, position)], [(0.0, programme.closed)], 0.0, abs(position)
     recorded: list[tuple[float, float]] = []
     last, aborted = None, ""
     try:
@@ -58,7 +59,8 @@ def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: 
                 recorded[-1] = (recorded[-1][0], plant.time + sample)
             if volts != commands[-1][1]:
                 commands.append((plant.time, volts))
-            way += abs(float(plant.advance(volts)[0]) - before)
+            after = float(plant.advance(volts)[0])
+            way, farthest = way + abs(after - before), max(farthest, abs(after))
             if plant.time - path[-1][0] >= EVERY:
                 path.append((plant.time, float(plant.state[0])))
     except AbortedError as error:
@@ -68,4 +70,6 @@ def rehearse(programme: Programme, model: Model, position: float = 0.0, sample: 
             raise
         aborted = f"the piston has reached the end stop, {plant.state[0]:+.3f} m (end: {programme.end:g} m)"
     commands.append((plant.time, programme.closed))
-    return Rehearsal(tuple(conductor.outcomes), plant.time, way, tuple(path), tuple(commands), tuple(recorded), aborted)
+    return Rehearsal(
+        tuple(conductor.outcomes), plant.time, way, farthest, tuple(path), tuple(commands), tuple(recorded), aborted
+    )

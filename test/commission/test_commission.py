@@ -1,5 +1,6 @@
 """Commissioning of simulated rigs: wiring, safe moves, predictions of what a move tells, and what comes out."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from pneumo_ros.commission import moves
 from pneumo_ros.commission.commission import Commissioned, Commissioning
 from pneumo_ros.commission.information import begun, knowledge
 from pneumo_ros.commission.performing import Performed
+from pneumo_ros.commission.safe import LATE, MORE, again, safe, unmoved
 from pneumo_ros.commission.simulated import SimulatedRig
 from pneumo_ros.commission.summary import errors, summary
 from pneumo_ros.commission.wiring import UnmovedError, find_wiring
@@ -143,7 +145,7 @@ def test_moves_are_made_small_enough_for_every_machine_that_may_be(sheet: Model)
     machines = [sheet, *moves.drawn(sheet, wide, 4, 3)]
     programme = moves.dynamic(sheet)
     assert any("end stop" in rehearse(programme, one).aborted for one in machines)
-    made = moves.safe(programme, machines)
+    made = safe(programme, machines)
     assert made is not None
     assert not any("end stop" in rehearse(made, one).aborted for one in machines)
     assert made.trials[0].voltage.largest < programme.trials[0].voltage.largest
@@ -159,9 +161,58 @@ def test_a_trial_that_reaches_the_limit_is_tried_smaller(sheet: Model, truth: Mo
         return rig.perform(programme, words, name)
 
     job = Commissioning(sheet, perform, sensors=())
+    job._possible = lambda: [sheet]  # type: ignore[method-assign]
     job._take("static", moves.static(sheet))
     assert [name for name, _ in tried] == ["00_static", "00_static_1"]
     assert tried[1][1] < tried[0][1]
+
+
+def test_larger_voltages_are_rehearsed_and_only_those_of_the_way_back_grow(sheet: Model) -> None:
+    reason, machines, programme = "at +0.50 V the piston stays at +0.070 m", [sheet], moves.static(sheet)
+    starts, dead = (programme.low, 0.0, programme.high), moves.narrowest(machines)
+    places = list(itertools.product(machines, starts))
+    assert any(
+        "end stop" in rehearse(moves.returning(programme, dead, MORE[0]), one, y, LATE).aborted for one, y in places
+    )
+    tried = again(programme, reason, machines)
+    assert tried is not None
+    assert tried.return_right > programme.return_right
+    assert tried.trials == programme.trials
+    assert not any("end stop" in rehearse(tried, one, y, LATE).aborted for one, y in places)
+
+
+def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model) -> None:
+    """A machine that may be a jet: the trial ends with what was recorded, and nothing more is sent."""
+    rig, sent, said = SimulatedRig(truth), list[Programme](), list[str]()
+
+    def perform(programme: Programme, words: tuple[str, ...], name: str) -> Performed:
+        sent.append(programme)
+        done = rig.perform(replace(programme, trials=programme.trials[:2]), words, name)
+        return replace(done, reason="at +0.50 V the piston stays at +0.070 m")
+
+    job = Commissioning(sheet, perform, sensors=(), tell=said.append)
+    jet = sheet.with_parameters({"arctan_flow.voltage_gain": 2.0, "lugre_friction.static_friction": 200.0})
+    job._possible = lambda: [jet]  # type: ignore[method-assign]
+    programme = moves.static(sheet)
+    assert again(programme, "the piston stays at", [jet]) is None
+    done = job._performed(programme, "static")
+    assert len(sent) == 1
+    assert len(done.recordings) == 2
+    assert "no other voltages are safe" in said[0]
+
+
+def test_ramps_are_rehearsed_though_they_know_no_position(sheet: Model) -> None:
+    """A piston that jumps farther than half the stroke is moved by smaller ramps, or by none."""
+    strong = plumbing(sheet, stronger=4.0)
+    assert safe(strong, [sheet]) == strong
+    far = rehearse(strong, sheet, sample=LATE).farthest
+    assert 0.0 < far < 0.1
+    near = replace(strong, end=0.9 * far, low=-0.3 * far, high=0.3 * far)
+    made = safe(near, [sheet])
+    assert made is not None
+    assert made.trials[0].voltage.largest < strong.trials[0].voltage.largest
+    stuck = sheet.with_parameters({"lugre_friction.static_friction": 400.0})
+    assert unmoved(strong, [sheet, stuck], 0.004) == [stuck]
 
 
 @pytest.fixture(scope="module")

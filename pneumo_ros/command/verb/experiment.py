@@ -167,7 +167,7 @@ def _smaller(
     """The programme without the constant voltages that take the model to an end stop, or with all voltages smaller."""
     from dataclasses import replace
 
-    from pneumo_ros.commission.moves import safe
+    from pneumo_ros.commission.safe import safe
 
     trials = programme.trials
     for kept in range(len(rehearsal.outcomes) // 2 * 2, 0, -2) if programme.experiment == "constant-voltage" else ():
