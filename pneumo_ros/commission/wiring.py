@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from pneumo_ros.diagnose.score import MARGIN
 from pneumo_ros.errors import DataError, PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.reading.read import ATMOSPHERE
-from pneumo_ros.reading.rig_guess import APART, guess_rig
+from pneumo_ros.reading.rig_guess import Guess, guess_rig, moving_part
 from pneumo_ros.records import Recording
 from pneumo_ros.records.corrections import corrected, wiring
 from pneumo_ros.runs.clock import on_one_clock
@@ -56,10 +56,20 @@ def find_wiring(
     """
     _check_alive(recordings[0], model)
     found = guess_rig(recordings, model, sensors, [word for word in known if word.startswith("closed=")])
-    alike = [one for one in found.ranked if one.size <= APART * found.best.size][:TRIED]
-    fits = {one.words: _fits(recordings, model, one.words) for one in alike} if len(alike) > 1 else {}
-    best, *others = sorted(fits, key=lambda words: -fits[words]) or [found.best.words]
-    return Wired(best, not others or fits[best] > fits[others[0]] + MARGIN)
+    judged = fitted(found, recordings, model)
+    return Wired(judged.best.words, judged.certain)
+
+
+def fitted(found: Guess, recordings: Sequence[Recording], model: Model) -> Guess:
+    """The guess with the hypotheses that explain the recordings alike in the order of fits of the machine to them."""
+    alike = found.alike[:TRIED]
+    if len(alike) < 2:
+        return found
+    parts = [moving_part(one) for one in recordings]
+    fits = {one.words: _fits(parts, model, one.words) for one in alike}
+    best, second, *others = sorted(alike, key=lambda one: -fits[one.words])
+    ranked = (best, second, *others, *(one for one in found.ranked if one not in alike))
+    return replace(found, ranked=ranked, decided=fits[best.words] > fits[second.words] + MARGIN)
 
 
 def _fits(recordings: Sequence[Recording], model: Model, words: tuple[str, ...]) -> float:

@@ -50,10 +50,14 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Guess:
-    """The hypotheses, the likeliest first; `recorded` is that of no correction, None where it makes no sense."""
+    """The hypotheses, the likeliest first; `recorded` is that of no correction, None where it makes no sense.
+
+    decided: a fit of the machine has told the first one from those that explain the recording alike.
+    """
 
     ranked: tuple[Hypothesis, ...]
     recorded: Hypothesis | None
+    decided: bool = False
 
     @property
     def best(self) -> Hypothesis:
@@ -63,7 +67,12 @@ class Guess:
     @property
     def certain(self) -> bool:
         """Whether the next hypothesis that says anything else is clearly worse."""
-        return len(self.ranked) < 2 or self.ranked[1].size > APART * self.best.size
+        return self.decided or len(self.alike) == 1
+
+    @property
+    def alike(self) -> tuple[Hypothesis, ...]:
+        """Those that explain the recording nearly as well as the best, and that one."""
+        return tuple(one for one in self.ranked if one.size <= APART * self.best.size)
 
 
 def guess_rig(
@@ -78,7 +87,7 @@ def guess_rig(
     file's; neither is then guessed. Raises DataError for a recording without command, position or pressures, where the
     piston hardly moves, or in which no hypothesis makes sense.
     """
-    parts = [_part(one) for one in ([recorded] if isinstance(recorded, Recording) else recorded)]
+    parts = [moving_part(one) for one in ([recorded] if isinstance(recorded, Recording) else recorded)]
     names = ", ".join(part.name for part in parts)
     for part in parts:
         if part.voltage is None or part.pressure_a is None or part.pressure_b is None:
@@ -111,7 +120,7 @@ def guess_rig(
     return Guess(tuple(ranked), plain)
 
 
-def _part(recording: Recording) -> Recording:
+def moving_part(recording: Recording) -> Recording:
     """The part of SECONDS in which the piston moves most, at rest before it if that is possible."""
     time = recording.time
     if time[-1] <= SECONDS:

@@ -3,8 +3,9 @@
 pneumo rig check BAG --model my.yaml --out rig.yaml
 
 Units, gauge or absolute, swapped chambers, reversed position or command, the zero of the encoder and the signal that
-closes the valve are tried in every combination; the machine's equations say which one it is. Exit code 1 when two
-combinations explain the recording alike.
+closes the valve are tried in every combination; the machine's equations say which one it is. Where two explain the
+recording alike, such as mirror images, the machine is fitted to it with both, within what its file says. Exit code 1
+when even that does not tell them apart.
 """
 
 import argparse
@@ -42,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> int:
     """Read, guess, print, write."""
+    from pneumo_ros.commission.wiring import fitted
     from pneumo_ros.reading.rig_guess import guess_rig
     from pneumo_ros.records import read_recording
 
@@ -50,7 +52,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     model = chosen_model(options)
     recording = read_recording(options.bag, options.namespace, options.joint)
     with console.progress("Trying"):
-        found = guess_rig(recording, model)
+        found = fitted(guess_rig(recording, model), [recording], model)
     console.say(text(found, recording.name, model.name))
     if options.out:
         origin = f"From {Path(options.bag).name}: check each line."
@@ -89,7 +91,8 @@ def text(found: "Guess", recording: str, machine: str) -> str:
     if found.recorded is not None and found.best.words:
         said += f" Taken as it is, its residuals are {found.recorded.size / found.best.size:.1f} times as large."
     if not found.certain:
-        said += " The next one explains it nearly as well: record full strokes both ways, at several voltages."
+        apart = ",".join(sorted({*found.best.words} ^ {*found.alike[1].words}))
+        said += f" The next one explains it nearly as well. They differ in {apart}."
     return columns(rows, right=range(1, len(rows[0]))) + "\n\n" + said
 
 
