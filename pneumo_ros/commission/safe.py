@@ -13,7 +13,7 @@ from pneumo_ros.experiment.rehearsal import rehearse
 from pneumo_ros.plant import Model
 
 LESS, FEWEST = 0.6, 0.05  # a move that would leave the limits is tried with this share of its voltages; smallest share
-MORE = (1.8, 1.4, 1.2)  # factors of the voltages beyond the dead zone that take a piston back that stayed at them
+MORE = (1.4, 1.2, 1.1)  # factors of the voltages that take a piston back that stayed at them
 ROOMS = (1.0, 0.6, 0.35)  # of the way between the limits, where less voltage does not help: a jump takes its way
 CLEAR = 0.95  # of the way to the end stop, beyond which no rehearsed piston may come
 LATE = 0.012  # s between two decisions of a rehearsal: a rig's commands come as late
@@ -39,16 +39,39 @@ def safe(programme: Programme, machines: Sequence[Model], starts: Sequence[float
 def again(programme: Programme, reason: str, machines: Sequence[Model]) -> Programme | None:
     """What to send after `programme` was ended for `reason`: smaller voltages, or larger ones to take the piston back.
 
-    It is rehearsed from mid stroke and from both limits, as the piston may stand anywhere. None where nothing is safe.
+    machines: those that agree with the reason. It is rehearsed from mid stroke and from both limits, as the piston may
+    stand anywhere. None where nothing is safe, or no machine agrees.
     """
-    starts, dead = (0.0, programme.low, programme.high), narrowest(machines)
+    if not machines:
+        return None
+    starts = _anywhere(programme)
     if LIMIT in reason:
-        return safe(smaller(programme, dead, LESS), machines, starts)
+        return safe(smaller(programme, narrowest(machines), LESS), machines, starts)
     for clear, more in itertools.product((CLEAR, 1.0), MORE):
-        tried = returning(programme, dead, more)
+        tried = returning(programme, (0.0, 0.0), more)
         if _all_clear(tried, machines, starts, clear):
             return tried
     return None
+
+
+def agreeing(programme: Programme, reason: str, machines: Sequence[Model], most: int) -> list[Model]:
+    """The first `most` of `machines` on which `programme` may be ended for the kind of `reason`, too.
+
+    What a machine was known to be is refuted where the plant does what it would not do.
+    """
+    kind = LIMIT if LIMIT in reason else STAYS
+
+    def agrees(machine: Model) -> bool:
+        try:
+            return any(kind in rehearse(programme, machine, y, LATE).aborted for y in _anywhere(programme))
+        except NumericalError:
+            return False
+
+    return list(itertools.islice(filter(agrees, machines), most))
+
+
+def _anywhere(programme: Programme) -> tuple[float, float, float]:
+    return 0.0, programme.low, programme.high
 
 
 def unmoved(programme: Programme, machines: Sequence[Model], way: float) -> list[Model]:
