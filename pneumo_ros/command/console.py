@@ -154,7 +154,7 @@ class Progress:
             return ""
         estimated = passed * (1.0 - share) / share
         self._end = min(self._end, now + estimated)
-        seconds = self._end - now
+        seconds = max(self._end - now, 0.0)
         if estimated > self.SLIP * max(seconds, 0.5):
             return ", longer than estimated"
         return f", about {seconds:.0f} s left" if seconds < 100.0 else f", about {seconds / 60.0:.0f} min left"

@@ -4,6 +4,9 @@ Pulses of on/off valves and the loops of regulators change the flow while the co
 map and no steady mass balance. All parameters are fitted together by multiple shooting instead, in segments so short
 that few hold a breakaway. Two fits to two halves of the segments may end in neighbouring minima, where a breakaway is
 predicted a little early or late: half their difference counts as uncertainty.
+
+A position loop that follows a goal has no constant command either. It corrects what is predicted wrongly, so that its
+segments may be as long as the predictions that are judged: in short ones a small servo hardly moves.
 """
 
 import math
@@ -25,6 +28,7 @@ from pneumo_ros.shooting.segments import Segments, cut
 Array = NDArray[np.float64]
 
 SEGMENT, SAMPLES = 0.1, 20  # s and samples: a segment is at least as long as both
+LOOP_SEGMENT, FEWEST = 1.0, 10  # s, of a position loop; recordings too short for so many segments have shorter ones
 MOST = 140  # segments: more narrow intervals slowly and take proportionally longer
 _DETERMINED = 0.5  # of the prior deviation: a parameter that is known no better is not determined
 # not found by motion: a scale of the opening that the coefficients take in, and a share that is chosen
@@ -43,8 +47,8 @@ class MotionIdentification:
 
 
 def needs_motion(model: Model) -> bool:
-    """Whether flow changes under a constant command: pulses, or a regulator's loop."""
-    return model.composition.jumping or "pressure_regulator" in model.effects
+    """Whether no constant command gives steady motion: pulses, a regulator's loop, a loop that follows a goal."""
+    return model.composition.jumping or "pressure_regulator" in model.effects or model.self_driven
 
 
 def parameters_of(model: Model, wanted: Sequence[str]) -> tuple[str, ...]:
@@ -64,7 +68,7 @@ def fit_by_motion(
 ) -> MotionIdentification:
     """Fit to two halves of evenly drawn segments; the difference counts. Raises DataError as `refit_segments`."""
     alike = on_one_clock(runs)
-    segments = cut(model, alike, max(SEGMENT, SAMPLES * alike[0].sample_time))
+    segments = cut(model, alike, max(_length(model, alike), SAMPLES * alike[0].sample_time))
     rows = np.unique(np.linspace(0, len(segments) - 1, min(MOST, len(segments))).round().astype(np.int64))
     parts = [segments.pick(rows[k::2]) for k in range(2)]
     halves = _halves(model, parts, parameters_of(model, wanted), tell)
@@ -75,6 +79,14 @@ def fit_by_motion(
     noise = 0.5 * sum(_measured(part) for part in parts)
     misfit = float(np.sqrt(sum(one.costs[-1] for one in halves) / noise))
     return MotionIdentification(model.with_parameters(values), found, unknown, len(rows), misfit)
+
+
+def _length(model: Model, runs: Sequence[Run]) -> float:
+    """The length of a segment [s], where the clock is fast enough."""
+    if not model.self_driven:
+        return SEGMENT
+    recorded = sum(len(run) * run.sample_time for run in runs)
+    return max(SEGMENT, min(LOOP_SEGMENT, recorded / FEWEST))
 
 
 def _halves(

@@ -5,7 +5,8 @@
 3. the mass balance of the same stretches -> flow coefficients and dead zone
 4. presliding -> bristle stiffness; Eqs. 15-16, corrected, for parameters it does not show
 
-Machines with on/off valves or regulators have no steady flow: see `by_motion`.
+Machines with on/off valves or regulators have no steady flow, those in a position loop no constant command: see
+`by_motion`.
 """
 
 from collections.abc import Callable, Sequence

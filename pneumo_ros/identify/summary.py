@@ -31,7 +31,7 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
             {"between": list(pair), "r": r, "strong": bool(abs(r) > STRONG)} for pair, r in found.correlations.items()
         ],
         "map": {"points": _points(found), "curve": _curve(found), **_fit_quality(found), "window_s": WINDOW},
-        "motion": {"segments": found.segments, "misfit": found.misfit} if found.segments else None,
+        "motion": _motion(found),
         "runs": [_run(run, [w for w in found.windows if w.run == run.name]) for run in runs],
         "refused": [
             {"run": w.run, "start_s": w.start, "stop_s": w.stop, "input": w.input, "reason": w.reason,
@@ -44,6 +44,13 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
             for b in found.breakaways
         ],
     }  # fmt: skip
+
+
+def _motion(found: Identification) -> dict[str, Any] | None:
+    """How parameters were fitted to any motion; None where constant commands gave a static map."""
+    if not found.segments:
+        return None
+    return {"segments": found.segments, "misfit": found.misfit, "in_position_loop": found.model.self_driven}
 
 
 def _fit_quality(found: Identification) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import pytest
 from pneumo_ros.command.main import main
 from pneumo_ros.diagnose.hypothesis import missing
 from pneumo_ros.errors import DataError
+from pneumo_ros.identify import by_motion
 from pneumo_ros.plant import Model, load_model, save_model
 from pneumo_ros.reading.read import read_run
 from pneumo_ros.records import read_recording, write_recording
@@ -102,6 +103,26 @@ def test_its_friction_is_identified(folder: Path, capsys: pytest.CaptureFixture[
     assert main(["compare", *runs, "--model", str(folder / "off.yaml"), "--fit", *runs, "--json", "-"]) in (0, 1)
     found = json.loads(capsys.readouterr().out)["refit"]["parameters"]["lugre_friction.coulomb_friction"]
     assert abs(found["value"] - 0.02) < max(3.0 * found["std"], 0.001)
+
+
+def test_identify_takes_a_goal_without_a_command(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The loop drives: friction and motor are found from values that are a quarter and a tenth off."""
+    truth = load_model(folder / "servo.yaml")
+    wanted = {"lugre_friction.coulomb_friction": 0.025, "dc_motor.force_per_volt": 0.09}
+    off = truth.with_parameters(wanted).with_uncertainty({name: 0.3 * value for name, value in wanted.items()})
+    save_model(off, folder / "guess.yaml")
+    monkeypatch.setattr(by_motion, "parameters_of", lambda *_: tuple(wanted))  # all take longer
+    words = ["--model", str(folder / "guess.yaml"), "--out", str(folder / "found.yaml"), "--json", "-"]
+    assert main(["identify", str(folder / "run_1"), *words]) == 0
+    out, said = capsys.readouterr()
+    assert "Judged: momentum, in its position loop" in said
+    assert json.loads(out)["motion"]["in_position_loop"]
+    found = load_model(folder / "found.yaml")
+    assert found["position_loop.proportional_gain"] == truth["position_loop.proportional_gain"]
+    for name, share in {"lugre_friction.coulomb_friction": 0.1, "dc_motor.force_per_volt": 0.01}.items():
+        assert found[name] == pytest.approx(truth[name], rel=share), name
 
 
 def test_a_table_gives_goal_and_gain(tmp_path: Path) -> None:

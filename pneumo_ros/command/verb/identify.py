@@ -3,9 +3,10 @@
 The command finds stretches of constant velocity and constant pressures in the recordings. There the pressures give the
 friction force: the static map, which gives Coulomb friction and drag. Static friction and Stribeck velocity come from
 the force at which the piston breaks away and from how it starts to move, the flow coefficients from the mass balance,
-the bristle stiffness from presliding. Machines with on/off valves or regulators are fitted to any motion instead, all
-parameters together. A parameter that the recordings do not determine keeps its value, a sentence says
-so, and the exit code is 1. BAG may be a folder: all recordings in it are read.
+the bristle stiffness from presliding. Machines with on/off valves or regulators, and those in a position loop, recorded
+with its goal, are fitted to any motion instead, all parameters together. A parameter that the recordings do not
+determine keeps its value, a sentence says so, and the exit code is 1. BAG may be a folder: all recordings in it are
+read.
 """
 
 import argparse
