@@ -61,15 +61,15 @@ class Fitter:
         """The evidence of the held-out runs, made only when it is needed."""
         return Evidence(self.start, self._held_runs)
 
-    def known(self, model: Model, fixed: Collection[str] = ()) -> Known:
+    def known(self, model: Model, fixed: Collection[str] = (), presliding: bool = False) -> Known:
         """Priors of the free parameters of `model` except `fixed`: narrow for the start's, wide for added effects'.
 
-        For the start's, as wide as its machine file states, if it does.
+        For the start's, as wide as its machine file states, if it does. `presliding`: also of what no equation shows.
         """
         names, centre, prior, step = [], [], [], []
         for name in default_free(model):
             section, _, _key = name.partition(".")
-            if name in UNSEEN or name in fixed:
+            if (name in UNSEEN and not presliding) or name in fixed:
                 continue
             if section in (*FRAME, *self.start.effects):
                 size = max(abs(self.start[name]), abs(self.start.specification(name).default))

@@ -2,6 +2,10 @@
 
 A static friction 3 % off costs next to nothing along the signals; in predictions over a second it makes a breakaway
 late, which costs a hundred noise deviations.
+
+A machine in its position loop is fitted to whole recordings: the loop corrects what is predicted wrongly, so that
+errors stay bounded however long a segment is, and the free start of each short segment would take in what parameters
+explain. Whole recordings also show the bristles' stiffness. Valleys lie close: where a fit ends depends on its start.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,6 +25,7 @@ Index = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 SEGMENTS = 80  # of all runs together: more take longer and change little
+LOOP = 10.0  # s, the longest segment of a machine in its position loop
 LEAD = 0.15  # s of a segment before its breakaway
 
 
@@ -39,8 +44,8 @@ def polish(
     Free parameters and their priors are those of `fitter`; estimates are changes against its start. `sure`: standard
     deviations of parameters of `model`, which narrow their priors where they are smaller.
     """
-    known, held = fitter.known(model), sure or {}
-    samples = max(round(SEGMENT / runs[0].sample_time), 2)
+    known, held = fitter.known(model, presliding=model.self_driven), sure or {}
+    samples = longest(runs) if model.self_driven else max(round(SEGMENT / runs[0].sample_time), 2)
     segments = cut_at(model, runs, telling(model, runs, samples, most), samples)
     widths = dict(zip(known.names, known.prior.tolist(), strict=True))
     centre = dict(zip(known.names, known.centre.tolist(), strict=True))
@@ -48,6 +53,15 @@ def polish(
     found = refit_segments(model, segments, known.names, holding, threads=threads, progress=progress)
     estimates = {n: replace(e, before=centre[n], prior=widths[n]) for n, e in found.estimates.items()}
     return replace(found, estimates=estimates)
+
+
+def longest(runs: Sequence[Run]) -> int:
+    """The most samples of a segment that every run holds between its gaps; at most those of `LOOP`, or of the usual."""
+    step = runs[0].sample_time
+    samples = min(round(LOOP / step), *(len(run) - 1 for run in runs))
+    while samples * step > 2.0 * SEGMENT and not all(len(side_by_side(run, samples)) for run in runs):
+        samples //= 2
+    return max(samples, 2)
 
 
 def telling(model: Model, runs: Sequence[Run], samples: int, most: int) -> list[Index]:

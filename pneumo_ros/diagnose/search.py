@@ -194,13 +194,18 @@ class Search:
         That is on recordings with too few breakaways, and on force-driven axes, whose motion no pressures limit; and
         only where predictions of training and held-out runs get no worse. The refit starts at the values of a `smaller`
         model that was settled: from elsewhere it may end in a valley, and the larger model would seem to predict worse.
+        In a position loop it starts at its own values as well, and the better fit counts.
         """
         if self.imposed or (not model.force_driven and self.slips(model) is not None):
             return model
         self.progress(0.9, "refitting by prediction")
-        sure = self.fitter.deviations(model)  # by the equations along the motion: segments alone bias the parameters
-        begin = with_values_of(model, smaller) if smaller else model
-        new = polish(self.fitter, begin, self.train.runs, ENOUGH, sure=sure).model
+        begins = [with_values_of(model, smaller) if smaller else model]
+        if not model.self_driven:  # segments alone bias the parameters
+            sure = self.fitter.deviations(model)
+        else:  # the drive follows the measured position, whose errors bias the equations
+            begins, sure = [*begins, *([model] if smaller else ())], {}
+        fits = [polish(self.fitter, begin, self.train.runs, ENOUGH, sure=sure) for begin in begins]
+        new = min(fits, key=lambda fit: fit.costs[-1]).model
         better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
         return new if better else model
 

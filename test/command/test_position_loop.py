@@ -1,13 +1,16 @@
 """A servo in its own position loop, recorded with its goal and no command: read, judged, fitted, imported."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pneumo_ros.command.main import main
+from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import missing
+from pneumo_ros.diagnose.polishing import longest, polish
 from pneumo_ros.errors import DataError
 from pneumo_ros.identify import by_motion
 from pneumo_ros.plant import Model, load_model, save_model
@@ -16,6 +19,7 @@ from pneumo_ros.records import read_recording, write_recording
 from pneumo_ros.runs.inputs import measured_inputs, measuring
 
 N, DT, NOISE = 3000, 2e-3, 1e-4
+MOTOR = "dc_motor.force_per_volt"
 SERVO = """/**:
   ros__parameters:
     effects: [position_loop, dc_motor, lugre_friction, pendulum_load]
@@ -92,6 +96,38 @@ def test_only_what_acts_on_the_servo_is_tried(folder: Path) -> None:
     found = missing(measuring(model, [run]), measured_inputs([run]))
     assert {"voltage_sag", "drive_delay", "load_dependent_friction", "viscous_friction"} <= {*found}
     assert not {"supply_pressure_droop", "command_delay", "dead_volume"} & {*found}
+
+
+def test_segments_of_a_loop_are_whole_recordings_or_what_gaps_leave(folder: Path) -> None:
+    run = read_run(folder / "run_1", load_model(folder / "servo.yaml")).run
+    assert longest([run, run]) == N - 1
+    gap = replace(run, measured=np.abs(np.arange(N) - 1000) > 2)
+    assert longest([run, gap]) == (N - 1) // 2
+    assert longest([replace(run, measured=np.zeros(N, dtype=bool))]) * DT <= 1.0
+
+
+@pytest.mark.check
+def test_predictions_fit_whole_recordings_of_a_loop(folder: Path) -> None:
+    """Short segments would take in with their free starts what parameters explain; bristles show as well."""
+    truth = load_model(folder / "servo.yaml")
+    off = truth.with_parameters({MOTOR: 0.09, "lugre_friction.bristle_stiffness": 40.0}).with_uncertainty({MOTOR: 0.02})
+    run = read_run(folder / "run_1", off).run
+    model = measuring(off, [run])
+    known = Fitter(model, [run], [run], []).known(model, presliding=True).names
+    assert "lugre_friction.bristle_stiffness" in known
+    found = polish(Fitter(model, [run], [run], []), model, [run], 4)
+    assert found.segments == 1
+    assert {*found.estimates} == {*known}
+    assert found.model[MOTOR] == pytest.approx(truth[MOTOR], rel=0.01)
+
+
+def test_the_voltage_sags_by_the_ratio_of_resistances() -> None:
+    """A motor that stalls at full duty has V_0 / (1 + r), whatever its size; one that generates raises the voltage."""
+    library = load_model("axis").library
+    drop = library.find("voltage_sag").equations
+    assert drop(0.0, 1.0, 0.25, 0.3, 7.4) == pytest.approx(7.4 * 0.2)
+    assert drop(0.0, 0.0, 0.25, 0.3, 7.4) == 0.0
+    assert drop(30.0, 1.0, 0.25, 0.3, 7.4) < 0.0
 
 
 def test_its_friction_is_identified(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
