@@ -16,7 +16,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
 from pneumo_ros.runs.inputs import measuring
-from pneumo_ros.shooting.refit import refit
+from pneumo_ros.shooting.refit import SEGMENT, refit
 
 
 @dataclass(frozen=True)
@@ -66,16 +66,19 @@ def compare(
     *,
     horizon: float | None = None,
     fit: Given | None = None,
+    segment: float | None = None,
     progress: Progress | None = None,
 ) -> ComparisonResult:
     """Compare a model with recordings: errors per run and signal, and the equations that fail.
 
     `recordings`: paths, folders of recordings, or what `read` returns; one or several. `model`: a machine file, the
     name of a shipped one, or a Model. Each run is predicted in windows of `horizon` [s], by default of 1 s,
-    or less where a run is shorter. `fit`: recordings to which the parameters of the model are fitted first. Raises
-    UsageError for a horizon that is no time and for recordings that hold no window of it, DataError for a recording
-    that cannot be used.
+    or less where a run is shorter. `fit`: recordings to which the parameters of the model are fitted first, in segments
+    of `segment` [s], by default of 0.5 s: long ones show slow laws. Raises UsageError for a horizon or segment that is
+    no time and for recordings that hold no window of it, DataError for a recording that cannot be used.
     """
+    if segment is not None and not (fit is not None and segment > 0.0):
+        raise UsageError(f"segment is {segment:g}; it takes seconds above 0, and goes with fit=, recordings to fit")
     if horizon is not None and not horizon > 0.0:
         raise UsageError(f"horizon is {horizon:g}; it takes seconds above 0, such as horizon=1.0")
     tell, plant = telling(progress), machine(model)
@@ -83,7 +86,9 @@ def compare(
     fitted = None if fit is None else runs_of(fit, plant)
     chosen, data = measuring(plant, [*given.runs, *(fitted.runs if fitted else ())]), dict[str, Any]()
     if fitted:
-        found = refit(chosen, fitted.runs, progress=lambda share, text: tell(0.5 * share, text))
+        found = refit(
+            chosen, fitted.runs, segment=segment or SEGMENT, progress=lambda share, text: tell(0.5 * share, text)
+        )
         chosen, data = found.model, {"refit": refit_dict(found, [one.name for one in fitted.runs])}
     begin = 0.5 if fitted else 0.0
     detail = judging.compare(chosen, given.runs, horizon, lambda share, text: tell(begin + (1 - begin) * share, text))

@@ -1,6 +1,7 @@
 """The options that refit a model before it is used, and the table of what moved."""
 
 import argparse
+import math
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.console import Console, table_text
@@ -14,18 +15,24 @@ if TYPE_CHECKING:
 
 
 def add_refit(parser: argparse.ArgumentParser) -> None:
-    """--refit, --fit and --out."""
+    """--refit, --fit, --segment and --out."""
     parser.add_argument(
         "--refit", action="store_true", help="refit the model first, to BAG... unless --fit names others"
     )
     parser.add_argument("--fit", nargs="+", metavar="BAG", help="recordings to refit on, while BAG... are scored only")
+    parser.add_argument(
+        "--segment", type=float, metavar="S",
+        help="length of the segments of a refit, each from its own start (default: 0.5 s); long ones show slow laws",
+    )  # fmt: skip
     parser.add_argument("--out", metavar="MODEL", help="write the refitted machine file")
 
 
 def refitted(
     options: argparse.Namespace, console: Console, model: "Model", runs: "list[Run]"
 ) -> "tuple[Model, dict[str, Any] | None]":
-    """The model as the options want it, and the JSON of its refit; UsageError for --out without a refit."""
+    """The model as the options want it, and the JSON of its refit; UsageError for --out or --segment without."""
+    if options.segment is not None:
+        _check_segment(options)
     if options.out and not (options.refit or options.fit):
         raise UsageError("--out writes the refitted machine file; add --refit, or --fit BAG...")
     if options.out:
@@ -36,16 +43,24 @@ def refitted(
     from pneumo_ros.compare.moved import refit_dict
     from pneumo_ros.plant import save_model
     from pneumo_ros.plant.mechanical import whole
-    from pneumo_ros.shooting.refit import refit
+    from pneumo_ros.shooting.refit import SEGMENT, refit
 
     used = read_named(options.fit, options, console, model.measuring(())) if options.fit else runs
     model = measuring(model, [*runs, *used], console) if options.fit else model
     with console.progress("Refitting") as progress:
-        found = refit(model, used, progress=lambda share, _: progress(share))
+        segment = options.segment or SEGMENT
+        found = refit(model, used, segment=segment, progress=lambda share, _: progress(share))
     if options.out:
         save_model(whole(given, found.model), options.out)
         console.note(f"Refitted machine written to {options.out}")
     return found.model, refit_dict(found, [one.name for one in used])
+
+
+def _check_segment(options: argparse.Namespace) -> None:
+    if not (options.refit or options.fit):
+        raise UsageError("--segment is the length of the segments of a refit; add --refit, or --fit BAG...")
+    if not 0.0 < options.segment < math.inf:
+        raise UsageError(f"--segment {options.segment:g} is not a length of time; give seconds, such as --segment 40")
 
 
 def refit_text(refit: dict[str, Any]) -> str:

@@ -11,7 +11,7 @@ BEYOND = 2.0  # prior standard deviations
 
 def refit_dict(found: Refit, runs: Sequence[str]) -> dict[str, Any]:
     """The part `refit` of a verb's JSON; `runs` are the names of the recordings that were fitted."""
-    return estimates_dict(found.model, found.estimates, runs)
+    return estimates_dict(found.model, found.estimates, runs) | {"segments": found.segments}
 
 
 def estimates_dict(model: Model, estimates: Mapping[str, Estimate], runs: Sequence[str]) -> dict[str, Any]:

@@ -56,6 +56,19 @@ def test_where_it_fails_fits_on_a_screen(capsys: pytest.CaptureFixture[str]) -> 
     assert worst.startswith("worst: s")
 
 
+def test_a_refit_takes_segments_of_the_length_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of 5 s of recording, two segments of 2 s; beside a refit only, and of a length that the recording has."""
+    words = ["compare", "sweep", "--fit", "sweep", "--model", "worn.yaml", "--quiet", "--json", "-"]
+    assert main([*words, "--segment", "2"]) == 0
+    found = json.loads(capsys.readouterr().out)["refit"]
+    assert found["segments"] == 2
+    assert found["parameters"][COULOMB]["value"] == pytest.approx(load_model()[COULOMB], rel=0.05)
+    assert "add --refit, or --fit BAG" in refused(capsys, "sweep", "--segment", "2")
+    assert "--segment -1 is not a length of time" in refused(capsys, "sweep", "--refit", "--segment", "-1")
+    assert main([*words, "--segment", "20"]) == 3
+    assert "give a shorter --segment" in capsys.readouterr().err
+
+
 def test_many_runs_get_a_line_each(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compare", *["steps"] * 9, "--horizon", "2", "--quiet"]) == 0
     lines = capsys.readouterr().out.splitlines()
