@@ -108,6 +108,14 @@ def measuring(model: "Model", runs: "Sequence[Run]", console: Console) -> "Model
     return found
 
 
+def say_rates(runs: "Sequence[Run]", console: Console) -> None:
+    """One line where runs of different rates are fitted together."""
+    from pneumo_ros.runs.clock import lowered
+
+    if said := lowered(runs):
+        console.note(said)
+
+
 def read_named(bags: Sequence[str], options: argparse.Namespace, console: Console, model: "Model") -> "list[Run]":
     """The recordings named, each of which must be usable, as runs for `model`; otherwise as `read_one`."""
     return [read_one(bag, options, console, model).run for bag in bags]

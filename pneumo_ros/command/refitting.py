@@ -5,7 +5,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.console import Console, table_text
-from pneumo_ros.command.recordings import measuring, read_named
+from pneumo_ros.command.recordings import measuring, read_named, say_rates
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable
 
@@ -47,6 +47,7 @@ def refitted(
 
     used = read_named(options.fit, options, console, model.measuring(())) if options.fit else runs
     model = measuring(model, [*runs, *used], console) if options.fit else model
+    say_rates(used, console)
     with console.progress("Refitting") as progress:
         segment = options.segment or SEGMENT
         found = refit(model, used, segment=segment, progress=lambda share, _: progress(share))

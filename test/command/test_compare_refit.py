@@ -69,6 +69,16 @@ def test_a_refit_takes_segments_of_the_length_asked_for(capsys: pytest.CaptureFi
     assert "give a shorter --segment" in capsys.readouterr().err
 
 
+def test_a_refit_to_two_rates_says_so(shelf: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, _, run = own("sweep", seconds=5.0, sample_time=3e-3)
+    write_recording(shelf / "slow", time=run.time, position=run.position, pressure_a=run.pressure_a,
+                    pressure_b=run.pressure_b, voltage=np.append(run.held, run.held[-1]))  # fmt: skip
+    assert main(["compare", "sweep", "--fit", "steps", "slow", "--json", "-"]) == 0
+    out, said = capsys.readouterr()
+    assert json.loads(out)["refit"]["runs"] == ["steps", "slow"]
+    assert "Rates differ: steps of 1000 Hz count at the 333.3 Hz of the slowest" in said
+
+
 def test_many_runs_get_a_line_each(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compare", *["steps"] * 9, "--horizon", "2", "--quiet"]) == 0
     lines = capsys.readouterr().out.splitlines()

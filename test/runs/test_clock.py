@@ -1,8 +1,11 @@
 """Clocks a little apart are laid on one sample time; the motion stays where it was."""
 
-import numpy as np
+from dataclasses import replace
 
-from pneumo_ros.runs.clock import on_one_clock
+import numpy as np
+import pytest
+
+from pneumo_ros.runs.clock import lowered, on_one_clock
 from pneumo_ros.runs.run import PARTS, Run
 
 
@@ -29,10 +32,28 @@ def test_runs_a_little_apart_come_to_their_median_sample_time() -> None:
         assert abs(float(run.time[~run.measured][0]) - 0.5) < 6e-3
 
 
-def test_runs_of_equal_or_of_other_rates_stay_as_they_are() -> None:
-    given = [sine(5e-3), sine(5e-3), sine(1e-3)]
+def test_runs_of_equal_rates_stay_as_they_are() -> None:
+    given = [sine(5e-3), sine(5e-3)]
     assert all(one is other for one, other in zip(on_one_clock(given), given, strict=True))
     assert on_one_clock([]) == []
+    assert lowered(given) == lowered([sine(5.0e-3), sine(5.1e-3)]) == ""
+
+
+@pytest.mark.parametrize("fast", [1e-3, 3.1e-3, 2e-4])
+def test_runs_of_other_rates_come_to_that_of_the_slowest(fast: float) -> None:
+    """Without what is too fast for it: 160 Hz would show as 40 Hz at 200 Hz. An input keeps its mean."""
+    slow, quick = sine(5e-3), sine(fast)
+    ripple = 0.1 * np.sin(2.0 * np.pi * 160.0 * quick.time)
+    kicks = np.where(np.arange(len(quick.input)) % 7 == 0, 0.7, 0.0)  # their mean is 0.1
+    found = on_one_clock([slow, replace(quick, position=quick.position + ripple, input=quick.input + kicks)])
+    assert found[0] is slow
+    assert {run.sample_time for run in found} == {5e-3}
+    n, inside = min(map(len, found)), slice(20, -20)
+    assert np.abs(found[1].position[:n] - slow.position[:n])[inside].max() < 0.02
+    assert np.abs(found[1].pressure_a[:n] - slow.pressure_a[:n])[inside].max() < 0.02
+    assert np.abs(found[1].held[: n - 1] - slow.held[: n - 1] - 0.1).max() < 0.05
+    said = lowered([slow, quick])
+    assert f"of {1.0 / fast:.4g} Hz count at the 200 Hz of the slowest" in said
 
 
 def test_runs_are_never_farther_apart_than_segments_allow() -> None:

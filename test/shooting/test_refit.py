@@ -166,5 +166,10 @@ def test_what_cannot_be_refitted_is_said() -> None:
         refit(model, [run], free=[COULOMB], priors={COULOMB: 0.0})
     with pytest.raises(DataError, match="no segment without a gap"):
         refit(model, [run], free=[COULOMB], segment=10.0)
-    with pytest.raises(UsageError, match="resample them to one sample time"):
-        refit(model, [run, own("steps", sample_time=2e-3, seconds=3.0)[2]], free=[COULOMB])
+
+
+def test_runs_of_two_rates_are_refitted_together() -> None:
+    model, _, run = own("steps", seconds=3.0)
+    other = own("steps", sample_time=2e-3, seconds=3.0)[2]
+    found = refit(model.with_parameters({COULOMB: 0.95 * model[COULOMB]}), [run, other], free=[COULOMB])
+    assert found.model[COULOMB] == pytest.approx(model[COULOMB], rel=0.01)

@@ -15,7 +15,7 @@ from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_model
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
-from pneumo_ros.command.recordings import measuring
+from pneumo_ros.command.recordings import measuring, say_rates
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.roles import add_holdout, read_roles, roles
 from pneumo_ros.errors import UsageError
@@ -64,6 +64,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     report = prepare_report(options)
     train, held, passed = read_roles(*paths, options, console, model)
     given, model = model, measuring(model, [*train, *held], console)
+    say_rates([*train, *held], console)
     with console.progress("Adding") as progress:
         found = add(model, effects, train, held, progress=progress, horizon=options.horizon)
     result: dict[str, Any] = adding_dict(found)

@@ -22,7 +22,7 @@ from pneumo_ros.command.arguments import add_model, add_output, add_recordings, 
 from pneumo_ros.command.console import Console, plain
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.patience import deadline, finishing
-from pneumo_ros.command.recordings import measuring
+from pneumo_ros.command.recordings import measuring, say_rates
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.roles import add_holdout, read_roles, require_holdout, roles
 
@@ -80,6 +80,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
         console.note(f"{name} is not tried: no parameter has a value at which it does nothing (neutral=0.0)")
     train, held, passed = read_roles(*paths, options, console, model)
     given, model = model, measuring(model, [*train, *held], console)
+    say_rates([*train, *held], console)
     for name, topics in unseen(model, [*train, *held]).items():
         console.note(f"{name} is not tried: it reads {' and '.join(topics)}, which not every recording has")
     outcome, estimates = diagnosed(model, train, held, console, end, options.horizon)
