@@ -8,6 +8,7 @@ from pneumo_ros.tables.units import find_unit
 
 NEEDED = 2  # points from which a column is taken for a signal
 UNIT = 3  # points for a unit of the signal's dimension
+_NAMED = ("reference", "command", "supply_pressure")  # and signals without words of their own: only by their names
 _REFERENCE = r"\b(ref|reference|goal|target|set ?point|desired|wanted|demand|soll)\b"
 _GAS = r"\b(p|pa|pb|ps|pressure|press|prs|druck)\b"
 # signal -> (pattern of the words in a name, points)
@@ -68,7 +69,7 @@ def points(signal: str, column: str) -> int:
     gas = (found is not None and found.dimension == "pressure") or any(re.search(_GAS, text) for text in texts)
     if SIGNALS[signal].dimensions == ("pressure",) and not gas:  # a letter or number alone says nothing
         return 0
-    score = UNIT if found is not None and signal not in ("reference", "command", "supply_pressure") else 0
+    score = UNIT if found is not None and signal in _WORDS and signal not in _NAMED else 0
     for pattern, worth in _WORDS.get(signal) or ((rf"\b{signal.replace('_', ' ')}\b", 6),):
         if any(re.search(pattern, text) for text in texts):
             score += worth

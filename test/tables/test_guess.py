@@ -88,6 +88,14 @@ def test_the_unit_of_a_velocity_follows_from_the_position() -> None:
     assert found.signals["velocity"].unit == "mm/s"
 
 
+@pytest.mark.parametrize("heading", ["u [V]", "valve [V]", "u (V)", "spool voltage [V]"])
+def test_a_voltage_is_a_valve_command_and_no_motor_voltage_by_its_unit_alone(heading: str) -> None:
+    found = guessed({"t": TIME, "x [mm]": 1e3 * X, "p_a [bar]": 3.0 + V, "p_b [bar]": 3.0 - V, heading: 5.0 + V})
+    assert taken(found) == {"position": "x [mm]", "pressure_a": "p_a [bar]", "pressure_b": "p_b [bar]",
+                            "command": heading}  # fmt: skip
+    assert taken(guessed({"t": TIME, "x [mm]": X, "f [N]": V, "supply voltage [V]": 12.0 + V}))["supply_voltage"]
+
+
 @pytest.mark.parametrize(
     ("factor", "offset", "unit", "gauge"),
     [

@@ -128,7 +128,9 @@ def test_a_table_is_mapped_and_a_machine_edited_in_a_narrow_page(
         tab.page.get_by_label("friction lag", exact=True).wait_for(state="hidden")
         assert tab.page.get_by_label("leakage to atmosphere", exact=True).is_visible()
         tab.page.get_by_role("button", name="mine", exact=True).click()
-        found = tab.wait_for_traces(lambda traces: len(traces) == 4)
+        tab.see(".bag.shown", "mine")
+        drawn = read_recording(leaking / "train_steps").position[0] * 1e3  # mm, not those of the run before
+        found = tab.wait_for_traces(lambda traces: len(traces) == 4 and abs(traces[0]["y"][0] - drawn) < 1e-3)
         assert max(found[-1]["y"]) < 5.0  # V: without its offset the command is 5 V higher
         assert found[0]["x"][-1] == pytest.approx(SECONDS, abs=0.1)
         assert tab.complaints == []
