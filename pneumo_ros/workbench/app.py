@@ -24,7 +24,7 @@ from pneumo_ros.workbench import (
     sliders_panel,
 )  # fmt: skip
 from pneumo_ros.workbench.answers import answer_in_words
-from pneumo_ros.workbench.data import answer_plots
+from pneumo_ros.workbench.data import answer_page
 from pneumo_ros.workbench.desks import Desks
 from pneumo_ros.workbench.parts import Panels
 from pneumo_ros.workbench.safety import Guard
@@ -66,7 +66,7 @@ def make_app(desks: Desks, guard: Guard) -> Dash:
     server.add_url_rule("/report/<name>", "report", _report_file)
     answer_in_words(server)
     accept_uploads(server, desks.uploads)
-    answer_plots(server, desks)
+    answer_page(server, desks, panels.presses)
     save_panel.serve_files(server, desks)
     guard.protect(server, lambda: f"/b/{desks.new()}", app.csp_hashes())
     server.before_request(partial(_led_on, desks))

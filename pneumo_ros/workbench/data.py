@@ -1,7 +1,8 @@
-"""Data that the page's script requests, as JSON: charts during a zoom or a slide, the job, the live axis."""
+"""What the page's script asks for, as JSON: charts during a zoom or a slide, the job, the live axis, presses."""
 
 import math
 from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from typing import Any
 
 from flask import Flask, Response, jsonify, request
@@ -22,8 +23,11 @@ from pneumo_ros.workbench.variant import Variant
 _LONGEST = 100_000  # bytes of a request
 
 
-def answer_plots(server: Flask, desks: Desks) -> None:
-    """POST /signals/DESK and the others take a JSON object and return one; status 400 says what is wrong."""
+def answer_page(server: Flask, desks: Desks, presses: Mapping[str, Callable[[Desk, Any, Any], None]]) -> None:
+    """POST /signals/DESK and the others take a JSON object and return one; status 400 says what is wrong.
+
+    `presses`: name of a control -> what a press of it does.
+    """
 
     def answering(make: Callable[[Desk, Mapping[str, Any]], Any]) -> Callable[[str], Response]:
         def answer(desk: str) -> Response:
@@ -39,9 +43,25 @@ def answer_plots(server: Flask, desks: Desks) -> None:
 
         return answer
 
-    answers = {"signals": signals_of, "response": response_chart, "status": status_of, "live": live_of}
+    answers: dict[str, Callable[[Desk, Mapping[str, Any]], Any]]
+    answers = {"signals": signals_of, "response": response_chart, "status": status_of, "live": live_of,
+               "press": partial(pressed, presses)}  # fmt: skip
     for name, make in answers.items():
         server.add_url_rule(f"/{name}/<desk>", name, answering(make), methods=["POST"])
+
+
+def pressed(
+    presses: Mapping[str, Callable[[Desk, Any, Any], None]], desk: Desk, asked: Mapping[str, Any]
+) -> dict[str, int]:
+    """Do what a press asks for; `asked` has what, of and value. The desk says what is wrong."""
+    do = presses.get(str(asked.get("what")))
+    if do is None:
+        raise UsageError(f"there is nothing to press that is called {str(asked.get('what'))[:80]!r}")
+    try:
+        do(desk, asked.get("of"), asked.get("value"))
+    except PneumoError as problem:
+        desk.say(problem)
+    return {"revision": desk.revision}
 
 
 def signals_of(desk: Desk, asked: Mapping[str, Any]) -> dict[str, Any] | None:

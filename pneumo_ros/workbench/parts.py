@@ -1,5 +1,6 @@
 """What the panels share: callbacks on the desk of their tab, and controls with names."""
 
+import json
 from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import Any
@@ -20,6 +21,7 @@ class Panels:
 
     def __init__(self, app: Dash, desks: Desks) -> None:
         self.app, self.desks = app, desks
+        self.presses: dict[str, Callable[[Desk, Any, Any], None]] = {}
 
     def show(
         self, outputs: Sequence[Output], inputs: Sequence[Any], render: Callable[..., Any], *, first: bool = True
@@ -51,6 +53,14 @@ class Panels:
 
         self.app.callback(ACTED, list(inputs), WHERE, prevent_initial_call=True)(self._on_desk(change))
 
+    def press(self, what: str, do: Callable[[Desk, Any, Any], None]) -> None:
+        """`do(desk, of, value)` when a control inside `pressed(what, of, ...)` is pressed; the page shows errors.
+
+        For controls of lists that the desk redraws. A callback on them would start again with the redrawn values while
+        it waits: a press would be lost, and what is redrawn would be taken for one.
+        """
+        self.presses[what] = do
+
     def _on_desk(self, function: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(function)
         def found(*values: Any) -> Any:
@@ -71,6 +81,11 @@ def revision() -> Input:
 def button(text: str, identifier: Any, *, main: bool = False, **more: Any) -> html.Button:
     """A button."""
     return html.Button(text, id=identifier, type="button", className="main" if main else "", **more)
+
+
+def pressed(what: str, of: Any) -> dict[str, str]:
+    """Attributes of a button, or of what holds check boxes or radio buttons: each press is sent, with `of`."""
+    return {"data-press": what, "data-of": json.dumps(of)}
 
 
 def choice(legend: str, control: Any, *, visible: bool = True) -> html.Fieldset:

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from dash import ALL, Input, Output, State, ctx, dcc, html, no_update
+from dash import Input, Output, State, dcc, html, no_update
 from dash.exceptions import PreventUpdate
 
 from pneumo_ros.workbench.bags import ROLES, Bag
 from pneumo_ros.workbench.desk import Desk
-from pneumo_ros.workbench.parts import Panels, asked, choice, revision
+from pneumo_ros.workbench.parts import Panels, choice, pressed, revision
 from pneumo_ros.workbench.uploads import MACHINES, TABLES
 
 
@@ -31,12 +31,11 @@ def register(panels: Panels) -> None:
     panels.show([Output("bags", "children"), Output("bags-of", "data"), Output("run", "data")],
                 [revision(), Input("run", "data"), State("bags-of", "data")], render)  # fmt: skip
     panels.act([Input("uploaded", "data")], _uploaded)
-    role = {"type": "role", "index": ALL}
-    panels.act([Input(role, "value"), State(role, "id")], _set_roles)
-    panels.act([Input({"type": "uncut", "bag": ALL, "index": ALL}, "n_clicks")], _uncut)
+    panels.press("role", lambda desk, name, role: desk.shelf.set_role(str(name), str(role)))
+    panels.press("uncut", _uncut)
     panels.show(
         [Output("run", "data", allow_duplicate=True), Output("tab", "value", allow_duplicate=True)],
-        [Input({"type": "show", "index": ALL}, "n_clicks"), Input("wanted-run", "data")], _chosen, first=False,
+        [Input("wanted-run", "data")], _wanted, first=False,
     )  # fmt: skip
 
 
@@ -47,24 +46,24 @@ def render(desk: Desk, _revision: int, chosen: str | None, drawn: str | None) ->
     now = repr((desk.shelf.bags, name))
     if now == drawn:
         raise PreventUpdate
-    rows = [_row(desk, k, bag, bag.name == name) for k, bag in enumerate(desk.shelf.bags)]
+    rows = [_row(desk, bag, bag.name == name) for bag in desk.shelf.bags]
     return rows or html.P("No recordings yet.", className="soft"), now, no_update if name == chosen else name
 
 
-def _row(desk: Desk, k: int, bag: Bag, shown: bool) -> html.Div:
+def _row(desk: Desk, bag: Bag, shown: bool) -> html.Div:
     if bag.problem:
         return html.Div([html.B(bag.name), html.P(bag.problem, className="problem")], className="bag", role="alert")
-    name = html.Button(bag.name, id={"type": "show", "index": k}, type="button", className="name", title=bag.path)
+    name = html.Button(bag.name, type="button", className="name", title=bag.path, **{"data-run": bag.name})
     seconds = html.Small(f"{desk.shelf.recording(bag).duration:.1f} s")
     options = [{"label": words, "value": role} for role, words in ROLES.items()]
-    radio = dcc.RadioItems(options, bag.role, id={"type": "role", "index": k}, inline=True, className="roles")
-    role = choice(f"What {bag.name} is for", radio, visible=False)
+    radio = dcc.RadioItems(options, bag.role, id={"type": "role", "name": bag.name}, inline=True, className="roles")
+    role = html.Div(choice(f"What {bag.name} is for", radio, visible=False), **pressed("role", bag.name))
     cuts = [
         html.Button(
-            f"cut {a:g}-{b:g} s \N{MULTIPLICATION SIGN}", id={"type": "uncut", "bag": k, "index": i}, type="button",
+            f"cut {a:g}-{b:g} s \N{MULTIPLICATION SIGN}", type="button", **pressed("uncut", [bag.name, a, b]),
             **{"aria-label": f"Remove the cut from {a:g} to {b:g} s of {bag.name}"},
         )
-        for i, (a, b) in enumerate(bag.cuts)
+        for a, b in bag.cuts
     ]  # fmt: skip
     return html.Div([name, seconds, role, html.Div(cuts, className="cuts")], className=f"bag{' shown' * shown}")
 
@@ -76,22 +75,13 @@ def _uploaded(desk: Desk, when: int | None) -> None:
         desk.shelf.take(sorted(p for p in folder.iterdir() if not p.name.startswith(".") and p.name not in own))
 
 
-def _set_roles(desk: Desk, values: list[str | None], names: list[dict[str, Any]]) -> None:
-    for role, one in zip(values, names, strict=True):
-        bag = desk.shelf.bags[one["index"]]
-        if role and role != bag.role:
-            desk.shelf.set_role(bag.name, role)
+def _uncut(desk: Desk, cut: Any, _value: Any) -> None:
+    name, begin, end = cut
+    desk.shelf.uncut(str(name), (float(begin), float(end)))
 
 
-def _uncut(desk: Desk, clicks: list[int | None]) -> None:
-    if asked(clicks) and ctx.triggered_id:
-        desk.shelf.uncut(desk.shelf.bags[ctx.triggered_id["bag"]].name, ctx.triggered_id["index"])
-
-
-def _chosen(desk: Desk, clicks: list[int | None], wanted: dict[str, Any] | None) -> tuple[str, str]:
-    """A recording by its name in the list, or by its cell in the heat map."""
-    if ctx.triggered_id == "wanted-run" and wanted and desk.variant.compared:
-        return desk.variant.compared.bags[wanted["number"] - 1], "signals"
-    if not asked(clicks) or not isinstance(ctx.triggered_id, dict):
+def _wanted(desk: Desk, wanted: dict[str, Any] | None) -> tuple[str, str]:
+    """The recording of a cell in the heat map."""
+    if not wanted or not desk.variant.compared:
         raise PreventUpdate
-    return desk.shelf.bags[ctx.triggered_id["index"]].name, "signals"
+    return desk.variant.compared.bags[wanted["number"] - 1], "signals"

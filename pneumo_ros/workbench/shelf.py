@@ -68,9 +68,9 @@ class Shelf:
         span = (round(max(begin, 0.0), 3), round(end, 3))
         self._change(name, lambda bag: replace(bag, cuts=tuple(sorted({*bag.cuts, span}))))
 
-    def uncut(self, name: str, index: int) -> None:
+    def uncut(self, name: str, span: tuple[float, float]) -> None:
         """Remove a cut."""
-        self._change(name, lambda bag: replace(bag, cuts=bag.cuts[:index] + bag.cuts[index + 1 :]))
+        self._change(name, lambda bag: replace(bag, cuts=tuple(cut for cut in bag.cuts if cut != span)))
 
     def _change(self, name: str, edit: Callable[[Bag], Bag]) -> None:
         with self._lock:

@@ -31,6 +31,16 @@ class Tab:
         inside = (f"127.0.0.1:{port}", "")  # without a host: data and blob addresses
         return [url for url in self.requests if urlsplit(url).netloc not in inside]
 
+    def answer_late(self, words: str, seconds: float = 1.5) -> None:
+        """From now on, answers to requests that contain these words arrive late, as on a busy machine."""
+        self.page.evaluate(
+            """([words, wait]) => { const real = window.fetch; window.fetch = async (url, how) => {
+                 const answer = await real(url, how);
+                 if (how && String(how.body).includes(words)) await new Promise((done) => setTimeout(done, wait));
+                 return answer; }; }""",
+            [words, 1e3 * seconds],
+        )
+
     def press(self, name: str) -> None:
         """Click a button."""
         self.clicks += 1

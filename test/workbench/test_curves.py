@@ -77,8 +77,10 @@ def pick(tab: Tab, where: str, what: str) -> None:
     """Choose from a drop-down list by the keyboard."""
     tab.page.locator(f"#{where}").focus()
     tab.page.keyboard.press("Enter")
-    tab.page.get_by_role("option", name=what, exact=True).last.click()
+    opened = tab.page.locator(".dash-dropdown-content")  # check boxes of the page are options, too
+    opened.get_by_role("option", name=what, exact=True).last.click()
     tab.page.keyboard.press("Escape")
+    opened.wait_for(state="hidden")
 
 
 def test_runs_topics_and_axes_are_chosen_in_the_page(tab: Tab) -> None:

@@ -24,6 +24,7 @@ window.dash_clientside.bench = (() => {
     const width = Math.max(Math.round(div.clientWidth), 300);
     if (chart.height) div.style.height = `${chart.height}px`;
     const data = await Plots.traces(chart, null, width);
+    if (charts.get(div) !== chart) return;
     data.forEach((trace) => {
       const before = (div.data || []).find((one) => one.name === trace.name && one.yaxis === trace.yaxis);
       if (before && before.visible !== undefined) trace.visible = before.visible;
@@ -221,6 +222,31 @@ window.dash_clientside.bench = (() => {
     if (pressed) window.dash_clientside.set_props("tab", { value: pressed.replace("go-", "") });
     return same();
   }
+
+  // A recording in the list: it is shown at once, whatever the server is busy with.
+  document.addEventListener("click", (event) => {
+    const name = event.target.closest && event.target.closest("[data-run]");
+    if (!name) return;
+    window.dash_clientside.set_props("run", { data: name.dataset.run });
+    window.dash_clientside.set_props("tab", { value: "signals" });
+  });
+
+  // Presses inside lists that the server redraws: each is sent by itself, in their order.
+  let presses = Promise.resolve();
+
+  function press(control, value) {
+    const asked = { what: control.dataset.press, of: JSON.parse(control.dataset.of), value };
+    presses = presses.then(() => fetched("press", asked)).catch(() => {}).then(look); // `look` says that the server is gone
+  }
+
+  document.addEventListener("click", (event) => {
+    const control = event.target.closest && event.target.closest("button[data-press]");
+    if (control) press(control, null);
+  });
+  document.addEventListener("change", (event) => {
+    const control = event.target.closest && event.target.closest("[data-press]");
+    if (control) press(control, event.target.type === "checkbox" ? event.target.checked : event.target.value);
+  });
 
   dark.addEventListener("change", () => charts.forEach((chart, div) => div.dataset.drawn && draw(div, { ...chart })));
 
