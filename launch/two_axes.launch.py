@@ -1,4 +1,4 @@
-"""The pruning arm: two cylinders, each with its simulator and controller in a namespace of its own, and the arm as TF.
+"""The pruning arm: one simulator of both cylinders on their supply, a controller in the namespace of each, and the TF.
 
 ros2 launch pneumo_ros two_axes.launch.py rviz:=true
 ros2 topic pub --once /lift/position/reference std_msgs/msg/Float64 "{data: 0.2}"
@@ -13,15 +13,13 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 SHARE = FindPackageShare("pneumo_ros")
-LIFT_MACHINE = PathJoinSubstitution([SHARE, "config", "arm", "lift.yaml"])  # with the weight that it lifts
-REACH_MACHINE = PathJoinSubstitution([SHARE, "config", "arm", "reach.yaml"])
-CARRYING = {"lift": {"initial.p_a": 3.33e5, "initial.p_b": 3.0e5}, "reach": {}}  # Pa: simulated, it hangs in its air
+MACHINE = PathJoinSubstitution([SHARE, "config", "arm", "pruning.yaml"])  # with the weight that the lift carries
+CARRYING = {"lift.initial.p_a": 3.33e5, "lift.initial.p_b": 3.0e5}  # Pa: simulated, it hangs in its air
 DEFAULT_CONTROL = PathJoinSubstitution([SHARE, "config", "control", "pid.yaml"])
-AXES = ("lift", "reach")  # namespaces; joints are lift_piston and reach_piston
+AXES = ("lift", "reach")  # of the machine file, and namespaces; joints are lift_piston and reach_piston
 
 ARGUMENTS = [
-    DeclareLaunchArgument("lift_params", default_value=LIFT_MACHINE, description="machine file of the lift"),
-    DeclareLaunchArgument("reach_params", default_value=REACH_MACHINE, description="machine file of the reach"),
+    DeclareLaunchArgument("params", default_value=MACHINE, description="machine file of the axes lift and reach"),
     DeclareLaunchArgument("lift_control", default_value=DEFAULT_CONTROL, description="control file of the lift"),
     DeclareLaunchArgument("reach_control", default_value=DEFAULT_CONTROL, description="control file of the reach"),
     DeclareLaunchArgument("simulate", default_value="true", description="simulate both; false: there is a real arm"),
@@ -29,33 +27,34 @@ ARGUMENTS = [
 ]
 
 
-def axis(name: str, control: LaunchConfiguration, params: LaunchConfiguration) -> list[Node]:
-    """Simulator and controller of one cylinder."""
-    parameters = [params, {"joint_name": f"{name}_piston"}]
-    simulator = Node(
+def simulator() -> Node:
+    """Both cylinders in one kernel: what one of them draws, the other one lacks."""
+    joints = {f"{name}.joint_name": f"{name}_piston" for name in AXES}
+    return Node(
         package="pneumo_ros",
         executable="simulator",
-        namespace=name,
-        parameters=[params, {"joint_name": f"{name}_piston", **CARRYING[name]}],
+        parameters=[LaunchConfiguration("params"), {**joints, **CARRYING}],
         output="screen",
         condition=IfCondition(LaunchConfiguration("simulate")),
     )
-    controller = Node(
+
+
+def controller(name: str) -> Node:
+    """It takes the axis whose name is its namespace from the machine file."""
+    control = LaunchConfiguration(f"{name}_control")
+    return Node(
         package="pneumo_ros",
         executable="controller",
         namespace=name,
-        parameters=[control, *parameters],
+        parameters=[control, LaunchConfiguration("params"), {"joint_name": f"{name}_piston"}],
         output="screen",
     )
-    return [simulator, controller]
 
 
 def generate_launch_description() -> LaunchDescription:
     """Both axes, their joint states in one message, the transforms of the arm."""
     urdf = PathJoinSubstitution([SHARE, "urdf", "pruning_arm.urdf.xacro"])
     description = {"robot_description": ParameterValue(Command(["xacro ", urdf]), value_type=str)}
-    lift = axis("lift", LaunchConfiguration("lift_control"), LaunchConfiguration("lift_params"))
-    reach = axis("reach", LaunchConfiguration("reach_control"), LaunchConfiguration("reach_params"))
     joints = Node(
         package="joint_state_publisher",
         executable="joint_state_publisher",
@@ -68,4 +67,4 @@ def generate_launch_description() -> LaunchDescription:
         arguments=["-d", PathJoinSubstitution([SHARE, "config", "rviz", "pruning_arm.rviz"])],
         condition=IfCondition(LaunchConfiguration("rviz")),
     )
-    return LaunchDescription([*ARGUMENTS, *lift, *reach, joints, publisher, rviz])
+    return LaunchDescription([*ARGUMENTS, simulator(), *(controller(name) for name in AXES), joints, publisher, rviz])

@@ -1,11 +1,16 @@
 """Which nodes the launch files start, with which parameters."""
 
+from contextlib import ExitStack, closing
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 import yaml
+from ros.axis_probe import AxisProbe
 from ros.launching import ROOT, after_exit, commands, others
+from ros.probe import probe
+from ros.processes import running
+from sensor_msgs.msg import FluidPressure
 
 IDENTIFY = {"rig/simulator", "twin/simulator", "rig/experiment", "identified/identification"}
 
@@ -84,17 +89,39 @@ def test_below_ros2_control_the_plant_lives_in_a_namespace(tmp_path: Path) -> No
         assert Path(file).is_file()
 
 
-def test_the_arm_has_two_axes_with_joints_of_their_own(tmp_path: Path) -> None:
-    nodes = commands("two_axes.launch.py", tmp_path, reach_params="reach.yaml", lift_control="mine.yaml")
-    assert set(nodes) == {f"{axis}/{name}" for axis in ("lift", "reach") for name in ("simulator", "controller")}
-    for name, command in nodes.items():
-        given = {"joint_name": f"{name.partition('/')[0]}_piston"}
-        carrying = {"initial.p_a": 3.33e5, "initial.p_b": 3e5} if name == "lift/simulator" else {}
-        assert parameters(command) == given | carrying
-    assert str(ROOT / "config" / "arm" / "lift.yaml") in nodes["lift/simulator"]
-    assert "reach.yaml" in nodes["reach/controller"]
-    assert "reach.yaml" not in nodes["lift/controller"]
+def test_the_arm_is_one_simulator_of_two_axes_with_joints_of_their_own(tmp_path: Path) -> None:
+    nodes = commands("two_axes.launch.py", tmp_path, lift_control="mine.yaml")
+    assert set(nodes) == {"/simulator", "lift/controller", "reach/controller"}
+    assert all(str(ROOT / "config" / "arm" / "pruning.yaml") in command for command in nodes.values())
+    joints = {axis: f"{axis}_piston" for axis in ("lift", "reach")}
+    carrying = {"lift.initial.p_a": 3.33e5, "lift.initial.p_b": 3e5}
+    assert parameters(nodes["/simulator"]) == {f"{axis}.joint_name": joint for axis, joint in joints.items()} | carrying
+    for axis, joint in joints.items():
+        assert parameters(nodes[f"{axis}/controller"]) == {"joint_name": joint}
     assert [name for name, command in nodes.items() if "mine.yaml" in command] == ["lift/controller"]
+    mine = commands("two_axes.launch.py", tmp_path, params="my_arm.yaml", simulate="false")
+    assert set(mine) == {"lift/controller", "reach/controller"}
+    assert all("my_arm.yaml" in command for command in mine.values())
     above = others("two_axes.launch.py")
     assert set(above) == {"joint_state_publisher", "robot_state_publisher"}
     assert "/lift/joint_states" in above["joint_state_publisher"][1]["source_list"]
+
+
+@pytest.mark.check
+def test_both_axes_of_the_arm_move_on_one_supply(tmp_path: Path) -> None:
+    nodes = commands("two_axes.launch.py", tmp_path)
+    with ExitStack() as stack:
+        processes = [stack.enter_context(running(*command, cwd=tmp_path)) for command in nodes.values()]
+        whole = stack.enter_context(probe(""))
+        supply = whole.hear("supply/pressure", FluidPressure, 10)
+        one = {axis: stack.enter_context(closing(AxisProbe(axis, f"{axis}_piston"))) for axis in ("lift", "reach")}
+        for axis, ax in one.items():
+            ax.wait(lambda ax=ax: ax.heard["valve/command"] and ax.heard["joint_states"], f"a command of {axis}", 60.0)
+            assert list(ax.heard["joint_states"][-1].name) == [f"{axis}_piston"]
+        begin = len(supply)
+        one["lift"].aim(0.1)
+        one["reach"].aim(-0.1)
+        one["lift"].arrives(0.1)
+        one["reach"].arrives(-0.1)
+        assert min(message.fluid_pressure for message in supply[begin:]) < 6.95e5  # Pa, of 7e5: both draw from it
+        assert [process.end() for process in processes] == [0, 0, 0]
