@@ -18,13 +18,40 @@ if TYPE_CHECKING:
     from pneumo_ros.plant import Model
 
 VERBS = ("identify", "compare", "diagnose")  # that judge axes one by one
+KEEPING = ("add",)  # that change one axis of a machine, FILE:AXIS, and write the whole machine
 _FILES = ("report", "figures", "series")  # options that name a file: with several axes, one for each
 
 
 def run_verb(name: str, verb: ModuleType, options: argparse.Namespace, console: Console) -> int:
     """Run the verb, once for each axis where the machine has several; returns the exit code, the worst of all."""
     machine = chosen_machine(options) if name in VERBS else None
+    if name in KEEPING:
+        from pneumo_ros.plant.axes_section import place_of
+
+        path, axis = place_of(options.model)
+        if axis is not None:
+            return run_within(verb, Path(path), axis, options, console)
     code: int = verb.run(options, console) if machine is None else run_each(verb, machine, options, console)
+    return code
+
+
+def run_within(verb: ModuleType, path: Path, axis: str, options: argparse.Namespace, console: Console) -> int:
+    """Run the verb for one axis of the machine at `path`, and write the machine with what it made of that axis."""
+    from pneumo_ros.command.together import Together
+    from pneumo_ros.multiaxis import load_machine
+    from pneumo_ros.plant import load_model
+
+    load_model(options.model, tuple(options.effects))  # says what is wrong with the file or the axis
+    check_machine_file(options)
+    machine, above = load_machine(path, tuple(options.effects)), (options.namespace or "").strip("/").rpartition("/")[0]
+    with tempfile.TemporaryDirectory() as folder:
+        inner = WithinConsole(console, folder)
+        one = {**vars(options), "out": str(Path(folder) / f"{axis}.yaml")}
+        one["together"] = Together(machine, argparse.Namespace(**{**vars(options), "namespace": above or None}))
+        code: int = verb.run(argparse.Namespace(**one), inner)
+        _write(machine.with_axes(_written(argparse.Namespace(**one), axis)), options, console)
+        console.json(inner.result | {"machine_file": options.out})
+        console.next(inner.typed.replace(one["out"], f"{options.out}:{axis}"))
     return code
 
 
@@ -55,6 +82,27 @@ class AxisConsole(Console):
     def json(self, data: dict[str, Any]) -> None:
         """Keep the results."""
         self.result = data
+
+
+class WithinConsole(AxisConsole):
+    """Output of a verb for the one axis that was named: as it is, but for its JSON and what to type next."""
+
+    def __init__(self, outer: Console, hidden: str) -> None:
+        super().__init__(outer, "", hidden)
+        self.typed = ""
+
+    def note(self, text: str) -> None:
+        """A message, but for those on hidden files."""
+        if self.hidden not in text:
+            self.outer.note(text)
+
+    def progress(self, title: str) -> Progress:
+        """Progress, as it is."""
+        return self.outer.progress(title)
+
+    def next(self, words: str) -> None:
+        """Keep what to type next."""
+        self.typed = words
 
 
 def run_each(verb: ModuleType, machine: "Machine", options: argparse.Namespace, console: Console) -> int:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.axes_section import place_of
 from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.workbench.bags import Bag, reading_options
 from pneumo_ros.workbench.job import Line
@@ -86,7 +87,8 @@ def refit_plan(bench: Bench, effects: Sequence[str], machine: str, number: int) 
     if effects:
         holdout = ["--holdout", *held] if held else []
         words = ["add", *effects, *fit, *holdout, *bench.options(bench.machine), *files, "--report", f"{made}.html"]
-        label = f"+ {', '.join(effects)}"
+        label, axis = f"+ {', '.join(effects)}", place_of(bench.machine)[1]
+        machine = f"{machine}:{axis}" if axis else machine  # `add` writes all axes
     else:
         words = ["compare", *(held or fit), "--fit", *fit, *bench.options(bench.machine), *files]
         words += ["--report", f"{made}.html"]

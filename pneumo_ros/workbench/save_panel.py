@@ -6,6 +6,7 @@ from typing import Any
 from dash import Output, dcc, html
 from flask import Flask, Response, send_file
 
+from pneumo_ros.plant.axes_section import place_of
 from pneumo_ros.workbench.desk import Desk, commands
 from pneumo_ros.workbench.desks import Desks
 from pneumo_ros.workbench.parts import Panels, revision
@@ -34,9 +35,10 @@ def register(panels: Panels) -> None:
 def saved_files(desk: Desk) -> dict[str, tuple[str, Path]]:
     """Name for the browser -> (description, path), of the current machine."""
     variant, found = desk.variant, dict[str, tuple[str, Path]]()
-    if (desk.folder / variant.machine).is_file():
-        found[Path(variant.machine).name] = ("machine file", desk.folder / variant.machine)
-    stem = Path(variant.machine).stem
+    machine = Path(place_of(variant.machine)[0])
+    if (desk.folder / machine).is_file():
+        found[machine.name] = ("machine file", desk.folder / machine)
+    stem = machine.stem
     if variant.report and variant.report.is_file():
         found[f"{stem}_report.html"] = ("report of what made it", variant.report)
     for name in desk.maps:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.compare import typical
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.plant.axes_section import place_of
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,10 @@ def _array(path: Path, key: str) -> NDArray[Any]:
 
 def model_of(machine: str, folder: Path, effects: Sequence[str]) -> Model:
     """The model of a machine file relative to `folder`, or of a shipped one; UsageError as `load_model`."""
-    path = folder / machine
-    return load_model(str(path) if path.is_file() else machine, effects_files=tuple(effects))
+    file, axis = place_of(machine)
+    path = folder / file
+    own = f"{path}:{axis}" if axis else str(path)
+    return load_model(own if path.is_file() else machine, effects_files=tuple(effects))
 
 
 def runs_of(compared: Compared, bags: Sequence[str]) -> list[Mapping[str, Any]]:

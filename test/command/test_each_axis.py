@@ -101,3 +101,30 @@ def test_an_axis_is_not_taken_for_one_whose_name_ends_as_its_own() -> None:
     _, found = typed("compare", "run")
     for axis in machine.axes:
         assert all(one["explained_by_noise"] for one in found["axes"][axis]["equations"].values()), axis
+
+
+@pytest.mark.check
+def test_an_effect_is_added_to_one_axis_and_the_machine_kept(capsys: pytest.CaptureFixture[str]) -> None:
+    for k in (1, 2):
+        record(leaky(two(LINE)), Path(f"run_{k}"), k, 6.0)
+    line = ["add", "leakage_to_atmosphere", "run_1", "--holdout", "run_2", "--model", "two.yaml:elbow"]
+    code = main([*line, "--namespace", "elbow", "--out", "more.yaml", "--json", "out.json"])
+    found = json.loads(Path("out.json").read_text(encoding="utf-8"))
+    assert (code, found["machine_file"]) == (0, "more.yaml")
+    more, given = load_machine("more.yaml"), load_machine("two.yaml")
+    assert more.supply == LINE
+    assert more.axes["elbow"]["leakage_to_atmosphere.conductance_a"] == pytest.approx(6e-10, rel=0.1)
+    assert more.axes["shoulder"].as_dict() == given.axes["shoulder"].as_dict()
+    said = "".join(capsys.readouterr())
+    assert "compare run_2 --model more.yaml:elbow --namespace elbow" in said
+    assert "Machine file of all axes written to more.yaml" in said
+    assert main([*line, "--out", "more.yaml", "--quiet"]) == 2  # it exists
+    assert main(["compare", "run_2", "--model", "more.yaml", "--quiet", "--json", "out.json"]) == 0
+    found = json.loads(Path("out.json").read_text(encoding="utf-8"))
+    assert all(one["explained_by_noise"] for axis in found["axes"].values() for one in axis["equations"].values())
+
+
+def test_an_unknown_axis_is_refused_before_any_work(capsys: pytest.CaptureFixture[str]) -> None:
+    record(two(LINE), Path("run"), 1, 1.0)
+    assert main(["add", "viscous_friction", "run", "--model", "two.yaml:elbw", "--out", "more.yaml", "--quiet"]) == 2
+    assert "elbow" in capsys.readouterr().err

@@ -5,15 +5,19 @@ from pathlib import Path
 
 import pytest
 from hiding import environment_without
+from multiaxis.machines import two
 from workbench.conftest import Served
 
 from pneumo_ros.command.main import main
 from pneumo_ros.errors import UsageError
+from pneumo_ros.multiaxis import machine_text
 from pneumo_ros.plant import load_model
 from pneumo_ros.reading.read import ReadOptions
 from pneumo_ros.workbench.bags import Bag, found_bags
 from pneumo_ros.workbench.desk import Desk, Given, commands
 from pneumo_ros.workbench.plans import Bench, campaign_plan, compare_plan, diagnose_plan, refit_plan
+from pneumo_ros.workbench.save_panel import saved_files
+from pneumo_ros.workbench.variant import Variant
 
 BAGS = (
     Bag("a", "/data/a", "fit", cuts=((1.0, 2.5),)), Bag("b", "/data/b", "hold"), Bag("c", "/data/c", "out"),
@@ -118,3 +122,19 @@ def test_it_listens_to_this_machine_alone(tmp_path: Path) -> None:
         assert all(address.startswith("0100007F:") for address in own)
     finally:
         assert running.close() == 0
+
+
+def test_an_effect_is_added_to_one_axis_of_several(tmp_path: Path) -> None:
+    (tmp_path / "two.yaml").write_text(machine_text(two()), encoding="utf-8")
+    desk = Desk(tmp_path, Given(machine=str(tmp_path / "two.yaml") + ":elbow"))
+    bench = Bench((Bag("run", "/run", "fit"),), ReadOptions(), desk.variant.machine, ())
+    plan = refit_plan(bench, ["spring_load"], "two_1.yaml", 1)
+    assert plan.machine == "two_1.yaml:elbow"
+    adding, comparing = (list(line.arguments) for line in plan.lines)
+    assert adding[adding.index("--out") + 1] == "two_1.yaml"
+    assert comparing[comparing.index("--model") + 1] == "two_1.yaml:elbow"
+    (tmp_path / "two_1.yaml").write_text(machine_text(two()), encoding="utf-8")
+    desk.variants.append(Variant(1, plan.machine, "more", 0))
+    desk.choose(1)
+    assert desk.model().name == "two_1:elbow"
+    assert saved_files(desk)["two_1.yaml"][1] == tmp_path / "two_1.yaml"

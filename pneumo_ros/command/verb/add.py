@@ -2,7 +2,8 @@
 
 A name of the catalogue (pneumo effects) or of --effects is an effect, everything else is a recording; their order does
 not matter. Model and effects are fitted to BAG... together. The error is that on the recordings of --holdout, or on
-BAG... without --holdout. Exit code 1 says that the recordings do not determine a parameter of an added effect.
+BAG... without --holdout. With --model two.yaml:lift the effects are added to that axis, and MODEL holds all axes.
+Exit code 1 says that the recordings do not determine a parameter of an added effect.
 """
 
 import argparse
