@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.command.arguments import chosen_machine
 from pneumo_ros.command.console import Console, Progress
+from pneumo_ros.command.line_fitting import with_line
 from pneumo_ros.command.machine_out import check_machine_file
+from pneumo_ros.command.recordings import unfolded
 from pneumo_ros.errors import DataError, NumericalError
 from pneumo_ros.files import check_writable, write_whole
 
@@ -132,9 +134,19 @@ def run_each(verb: ModuleType, machine: "Machine", options: argparse.Namespace, 
     found = machine.with_axes(models)
     result = {"schema_version": 1, "model": machine.name, "axes": results} | _together(results)
     console.say("\n".join(f"{axis}/: {_headline(one)}" for axis, one in results.items()))
+    if fitted := _fitted(verb, options):
+        found, line = with_line(found, options, unfolded(fitted), console)
+        result |= line
     _write(found, options, console)
     console.json(result)
     return max(codes)
+
+
+def _fitted(verb: ModuleType, options: argparse.Namespace) -> list[str]:
+    """The recordings to which the verb fits axes, and so their line; none where it fits nothing."""
+    if verb.__name__.endswith(".identify"):
+        return list(options.bags)
+    return list(getattr(options, "fit", None) or (options.bags if getattr(options, "refit", False) else []))
 
 
 def _options(options: argparse.Namespace, together: "Together", axis: str, folder: Path) -> argparse.Namespace:

@@ -69,7 +69,7 @@ def supplied(axes: Mapping[str, Timed], line: Mapping[str, float], first: Array 
     damping = 1.0
     for _ in range(ROUNDS):
         now = {name: one.supplied(np.interp(one.time, grid.time, drop)) for name, one in axes.items()}
-        new = _drop(drawn_together(now, grid), grid.run.sample_time, line)
+        new = drop_of(drawn_together(now, grid), grid.run.sample_time, line)
         change = float(np.abs(new - drop).max())
         if change < ENOUGH:
             break
@@ -113,7 +113,7 @@ def drawn_together(axes: Mapping[str, Timed], grid: Timed) -> Array:
     )
 
 
-def _drop(flow: Array, step: float, line: Mapping[str, float]) -> Array:
+def drop_of(flow: Array, step: float, line: Mapping[str, float]) -> Array:
     """Drop (n,) [Pa] for mean flows (n - 1,) between samples `step` [s] apart."""
     from scipy.signal import lfilter  # slow to import, and seldom needed
 

@@ -35,6 +35,7 @@ def test_compare_names_the_axis_whose_equation_fails(capsys: pytest.CaptureFixtu
         axis: {name: one["explained_by_noise"] for name, one in result["equations"].items()}
         for axis, result in found["axes"].items()
     }
+    assert "supply" not in found  # nothing is fitted
     assert explained["shoulder"] == {"momentum": True, "chamber_a": True, "chamber_b": True}
     assert explained["elbow"] == {"momentum": True, "chamber_a": False, "chamber_b": True}
     assert found["model"] == "two"
@@ -69,11 +70,26 @@ def test_identify_writes_the_machine_file_of_all_axes() -> None:
     assert code in (0, 1)
     assert set(found["axes"]) == {"shoulder", "elbow"}
     machine = load_machine("found.yaml")
-    assert machine.supply == LINE
+    assert machine.supply == pytest.approx(LINE, rel=0.01)  # the simulator records supply/pressure, without noise
+    assert found["supply"]["recordings"] == 4
     elbow = machine.axes["elbow"]
     assert elbow["lugre_friction.coulomb_friction"] == pytest.approx(70.0, rel=0.05)
     assert elbow["lugre_friction.coulomb_friction"] != 70.0
     assert main(["identify", "runs", "--model", "two.yaml", "--out", "found.yaml", "--quiet"]) == 2  # it exists
+
+
+@pytest.mark.check
+def test_a_refit_of_all_axes_fits_the_line_that_they_share(capsys: pytest.CaptureFixture[str]) -> None:
+    true = {"resistance_supply": 3e7, "time_constant": 0.2}
+    record(two(true), Path("run"), 1, 4.0, 2000.0)
+    code, found = typed("compare", "run", "--refit", "--out", "found.yaml")
+    assert code == 0
+    for name, value in true.items():
+        one = found["supply"]["parameters"][name]
+        assert one["value"] == pytest.approx(value, rel=0.05)
+        assert one["before"] == LINE[name]
+        assert load_machine("found.yaml").supply[name] == pytest.approx(one["value"], rel=1e-5)
+    assert "supply line: resistance supply 3" in capsys.readouterr().out
 
 
 @pytest.mark.check
