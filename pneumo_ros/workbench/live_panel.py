@@ -31,8 +31,8 @@ _PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
     "voltage [V]": (("voltage", "third", 1.0),),
 }
 _TEXT = (
-    "A simulator or a rig that runs on this machine's ROS domain. Beside it, the current machine predicts every second "
-    "from the measured voltage."
+    "A simulator or a rig whose nodes run in the ROS domain of this computer; to try it, type simulator in a terminal, "
+    "and controller in another one. Beside it, the current machine predicts every second from the measured voltage."
 )
 _RESTS = 1e-3  # m/s; a slower piston sticks
 
