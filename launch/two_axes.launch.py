@@ -39,9 +39,8 @@ def simulator() -> Node:
     )
 
 
-def controller(name: str) -> Node:
+def controller(name: str, control: LaunchConfiguration) -> Node:
     """It takes the axis whose name is its namespace from the machine file."""
-    control = LaunchConfiguration(f"{name}_control")
     return Node(
         package="pneumo_ros",
         executable="controller",
@@ -61,10 +60,14 @@ def generate_launch_description() -> LaunchDescription:
         parameters=[{"source_list": [f"/{name}/joint_states" for name in AXES], "rate": 50}, description],
     )
     publisher = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[description])
+    controllers = [
+        controller("lift", LaunchConfiguration("lift_control")),
+        controller("reach", LaunchConfiguration("reach_control")),
+    ]
     rviz = Node(
         package="rviz2",
         executable="rviz2",
         arguments=["-d", PathJoinSubstitution([SHARE, "config", "rviz", "pruning_arm.rviz"])],
         condition=IfCondition(LaunchConfiguration("rviz")),
     )
-    return LaunchDescription([*ARGUMENTS, simulator(), *(controller(name) for name in AXES), joints, publisher, rviz])
+    return LaunchDescription([*ARGUMENTS, simulator(), *controllers, joints, publisher, rviz])

@@ -23,6 +23,7 @@ from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMot
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
+from pneumo_ros.runs.sensors import delays_of
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -212,19 +213,28 @@ class RunEvidence:
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
-        """Largest force that friction held before each slip, minus the static friction claimed at that moment."""
+        """Largest force that friction held before each slip, minus the static friction claimed at that moment.
+
+        A position that is late shows the slip late.
+        """
         if not self.breakaways:
             return np.empty(0)
+        late = int(np.rint(delays_of(model, q[None])[0, model.composition.sensed.index("y")] / self.run.sample_time))
         rows = np.concatenate(self.spans)
         seen = self._see(model, q, states[rows], rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
         largest = [
-            max(float((d * np.convolve(part, self.kernel, "same")[inner]).max()), 0.0)
+            max(float((d * np.convolve(part, self.kernel, "same")[earlier(inner, late)]).max()), 0.0)
             for part, inner, d in zip(load, self.inner, self.direction, strict=True)
         ]
         there = states[self.rested].copy()
         there[:, 1] = self.direction * _CREEP
         return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])
+
+
+def earlier(inner: slice, late: int) -> slice:
+    """The samples before a slip, which was `late` samples earlier; at least the first of them."""
+    return slice(inner.start, max(inner.stop - late, inner.start + 1))
 
 
 def _weighed(corrected: Measured, measured: Measured) -> Measured:

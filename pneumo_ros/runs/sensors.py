@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
@@ -16,6 +17,7 @@ Index = NDArray[np.int64]
 Drive = Callable[[Array, Index], tuple[Array, Array]]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
+LAST = 20  # samples at the end by which a reading goes on
 _ENOUGH = (1e-7, 1.0, 1.0)  # m, Pa, Pa: a tenth of what any sensor of such a machine resolves
 
 
@@ -49,15 +51,17 @@ def driven_lanes(
 ) -> tuple[Array, Array, Array]:
     """Frame states without sensor effects (lanes, n, frame), and states and rates from `drive` along them.
 
-    The readings r(x) are inverted by at most two steps of the fixed point x = x_measured - (r(x) - x); each step drives
-    the sensors' own states again. The velocity is corrected by the derivative of the correction of position. Each lane
-    stops when its correction changes by no more than `enough` [m, Pa, Pa], so its result does not depend on other
-    lanes. A lane with values that are not finite is returned as it is. parameters (lanes, parameters), or None for one
-    lane with the model's own.
+    Readings that are late are first taken at their own times. Then the readings r(x) are inverted by at most two steps
+    of the fixed point x = x_measured - (r(x) - x); each step drives the sensors' own states again. The velocity is
+    corrected by the derivative of the correction of position. Each lane stops when its correction changes by no more
+    than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane with values that are not finite is
+    returned as it is. parameters (lanes, parameters), or None for one lane with the model's own.
     """
     count = 1 if parameters is None else len(parameters)
-    moving, before = np.arange(count), np.zeros((count, 1, 1))
+    moving, before = np.arange(count), advanced(model, frame, parameters, run)
     given = np.repeat(frame[None], count, axis=0)
+    for lane in np.flatnonzero(before.any(axis=(1, 2))):
+        given[lane] = shifted(frame, before[lane], run.sample_time)
     states, rates = drive(given, moving)
     for _ in range(_ITERATIONS):
         shift = taken_back(model, states[moving], None if parameters is None else parameters[moving], run)
@@ -69,6 +73,33 @@ def driven_lanes(
         given[moving] = [shifted(frame, own, run.sample_time) for own in before]
         states[moving], rates[moving] = drive(given[moving], moving)
     return given, states, rates
+
+
+def advanced(model: Model, frame: Array, parameters: Array | None, run: Run) -> Array:
+    """What to add to the readings (lanes, n, sensed) so that those that a sensor gives late stand at their own times.
+
+    After the end a reading goes on as it did last. A fixed point alone would amplify the noise of what is faster than
+    1 / delay (rad/s) by a factor of eight.
+    """
+    delays = delays_of(model, model.values[None] if parameters is None else parameters)
+    found, time = np.zeros((len(delays), len(frame), delays.shape[1])), run.sample_time * np.arange(len(frame))
+    for lane, k in zip(*np.nonzero(delays > 0.0), strict=True):
+        reading = frame[:, model.states.index(model.composition.sensed[k])]
+        own = time + delays[lane, k]
+        rate = (reading[-1] - reading[-1 - LAST]) / (LAST * run.sample_time) if len(reading) > LAST else 0.0
+        found[lane, :, k] = np.interp(own, time, reading) + rate * np.maximum(own - time[-1], 0.0) - reading
+    return found
+
+
+def delays_of(model: Model, parameters: Array) -> Array:
+    """By how much sensors give each state late [s] (lanes, sensed): the parameters of that role of their effects."""
+    names, sensed = list(model.parameters), model.composition.sensed
+    found = np.zeros((len(parameters), len(sensed)))
+    for effect in model.composition.effects:
+        late = [names.index(f"{effect.name}.{key}") for key, one in effect.parameters.items() if one.role == "delay"]
+        written = {SENSED.get(signal) for function in effect.functions.values() for signal in function.writes}
+        found += parameters[:, late].sum(axis=1)[:, None] * np.array([state in written for state in sensed])
+    return found
 
 
 def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:

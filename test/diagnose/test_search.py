@@ -164,15 +164,17 @@ def test_a_search_that_never_runs_out_of_candidates_ends_and_says_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "scores", "moves"),
-    [(4.0, (10.0, 20.0), True), (4.0, (20.0, 10.0), False), (1.0, (10.0, 20.0), False)],
+    ("offset", "gain", "moves"),
+    [(4.0, 10.0, True), (4.0, -10.0, False), (1.0, 10.0, False)],
     ids=["far and better", "far and worse", "near"],
 )
-def test_candidates_are_compared_where_slopes_reach(offset: float, scores: tuple[float, float], moves: bool) -> None:
+def test_candidates_are_compared_where_slopes_reach(offset: float, gain: float, moves: bool) -> None:
     """Breakaways moved a parameter by four deviations; a refit to the equations may have the larger score."""
     model, refitted = load_model("axis"), load_model("paper")
     known = SimpleNamespace(offset=lambda _: np.array([offset]))
-    value = {id(model): scores[0], id(refitted): scores[1]}
-    fitter = SimpleNamespace(known=lambda _: known, refit=lambda _: refitted, score=lambda one: value[id(one)])
+    gains = {(id(refitted), id(model)): gain}
+    fitter = SimpleNamespace(
+        known=lambda _: known, refit=lambda _: refitted, gain=lambda new, old: gains[id(new), id(old)]
+    )
     found = Search.unstrained(cast(Search, SimpleNamespace(fitter=fitter)), model)
     assert found is (refitted if moves else model)
