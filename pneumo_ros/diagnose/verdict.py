@@ -51,8 +51,8 @@ def rises(before: Mapping[str, Array], after: Mapping[str, Array], run: NDArray[
     before, after: by signal, logarithms of the errors over noise (windows,) in the same windows. `run`: number of the
     recording (windows,) of each; by default all windows are of one. Windows of one recording are not independent: of
     the scatter between windows and that between recordings the larger one counts. One recording alone decides where its
-    predictions get worse by a tenth: a small rise in it may be chance, and a large one is lost in the scatter between
-    recordings that it makes itself.
+    predictions get worse by a tenth and the others do not gain as much: a small rise in it may be chance, and a large
+    one is lost in the scatter between recordings that it makes itself.
     """
     parts = [] if run is None or run.max(initial=0) == 0 else [run == k for k in np.unique(run)]
     change = np.mean([after[name] - before[name] for name in before], axis=0)
@@ -63,7 +63,8 @@ def rises(before: Mapping[str, Array], after: Mapping[str, Array], run: NDArray[
         and _worse({n: v[own] for n, v in before.items()}, {n: v[own] for n, v in after.items()})
         for own in parts
     )
-    return alone or bool(_worse(before, after) and np.mean(change) > BEYOND_SCATTER * scatter)
+    together = float(np.mean(change))
+    return (alone and together > 0.0) or bool(_worse(before, after) and together > BEYOND_SCATTER * scatter)
 
 
 def _scatter(change: Array) -> float:

@@ -138,7 +138,10 @@ def test_a_rise_within_the_scatter_of_windows_is_none() -> None:
 
 
 def test_a_rise_in_one_of_four_recordings_is_none() -> None:
-    """Windows of one recording are not independent; ten of each recording rise alike. By a tenth, one decides."""
+    """Windows of one recording are not independent; ten of each recording rise alike. By a tenth, one decides.
+
+    Unless the others gain more: a leak of 1878 nats was refused, with which three of four are predicted far better.
+    """
     recording = np.repeat(np.arange(4), 10)
     before = {"position_m": np.full(40, np.log(2.0))}
     in_one, in_all = ({"position_m": before["position_m"] + 0.05 * rises_in} for rises_in in (recording == 3, 1.0))
@@ -147,5 +150,7 @@ def test_a_rise_in_one_of_four_recordings_is_none() -> None:
     assert rises(before, in_all, recording)
     much = {"position_m": before["position_m"] + 0.2 * (recording == 3)}
     assert rises(before, much, recording)
+    others = {"position_m": much["position_m"] - 0.1 * (recording != 3)}
+    assert not rises(before, others, recording)
     random = np.random.default_rng(1).normal(0.0, 1.0, 40) * (recording == 3)  # a few breakaways at another moment
     assert not rises(before, {"position_m": much["position_m"] + random}, recording)
