@@ -126,7 +126,10 @@ class Evidence:
 
 @cache
 def _pool(process: int, threads: int) -> ThreadPoolExecutor:
-    """Threads that are kept, as each new one leaves memory behind; each process has its own."""
+    """Threads that are kept, as each new one leaves memory behind; each process has its own.
+
+    Not those of `plant.lanes`: these wait for them, and a pool whose threads wait for it stands still.
+    """
     return ThreadPoolExecutor(threads)
 
 
@@ -224,7 +227,7 @@ class RunEvidence:
         seen = self._see(model, q, states[rows], rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
         largest = [
-            max(float((d * np.convolve(part, self.kernel, "same")[earlier(inner, late)]).max()), 0.0)
+            max(float((d * np.convolve(part, self.kernel, "same")[_earlier(inner, late)]).max()), 0.0)
             for part, inner, d in zip(load, self.inner, self.direction, strict=True)
         ]
         there = states[self.rested].copy()
@@ -232,7 +235,7 @@ class RunEvidence:
         return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])
 
 
-def earlier(inner: slice, late: int) -> slice:
+def _earlier(inner: slice, late: int) -> slice:
     """The samples before a slip, which was `late` samples earlier; at least the first of them."""
     return slice(inner.start, max(inner.stop - late, inner.start + 1))
 

@@ -151,7 +151,7 @@ def test_moves_are_made_small_enough_for_every_machine_that_may_be(sheet: Model)
     assert made.trials[0].voltage.largest < programme.trials[0].voltage.largest
 
 
-def test_a_trial_that_reaches_the_limit_is_tried_smaller(sheet: Model) -> None:
+def test_a_trial_that_reaches_the_limit_is_tried_smaller(sheet: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     """By as much as is safe for a machine that reaches it, too."""
     brisk = sheet.with_parameters(
         {
@@ -169,7 +169,7 @@ def test_a_trial_that_reaches_the_limit_is_tried_smaller(sheet: Model) -> None:
         return rig.perform(programme, words, name)
 
     job = Commissioning(sheet, perform, sensors=())
-    job._otherwise = lambda: [sheet, brisk]  # type: ignore[method-assign]
+    monkeypatch.setattr(job, "_otherwise", lambda: [sheet, brisk])
     job._take("static", moves.static(sheet))
     assert [name for name, _ in tried] == ["00_static", "00_static_1"]
     assert tried[1][1] < tried[0][1]
@@ -199,7 +199,7 @@ def test_a_retry_is_rehearsed_on_machines_that_would_have_stayed_too(sheet: Mode
     assert tried.return_left > programme.return_left
 
 
-def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model) -> None:
+def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     """A machine that may be a jet: the trial ends with what was recorded, and nothing more is sent."""
     rig, sent, said = SimulatedRig(truth), list[Programme](), list[str]()
 
@@ -210,7 +210,7 @@ def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model) -> None
 
     job = Commissioning(sheet, perform, sensors=(), tell=said.append)
     jet = sheet.with_parameters({"arctan_flow.voltage_gain": 2.0, "lugre_friction.static_friction": 200.0})
-    job._otherwise = lambda: [jet]  # type: ignore[method-assign]
+    monkeypatch.setattr(job, "_otherwise", lambda: [jet])
     programme = moves.static(sheet)
     assert again(programme, "the piston stays at", [jet]) is None
     done = job._performed(programme, "static")
