@@ -8,6 +8,7 @@ SIGNALS = {
     "pressure_a_pa": ("pressure a", "kPa", 1e-3),
     "pressure_b_pa": ("pressure b", "kPa", 1e-3),
     "force_n": ("force", "N", 1.0),
+    "flow_a_kg_s": ("flow a", "mg/s", 1e6),
 }
 EQUATIONS = {
     "momentum": ("momentum", "N", 1.0),

@@ -6,7 +6,7 @@ from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import mechanical, pneumatic
 from pneumo_ros.plant.signals import DRIVE
-from pneumo_ros.runs.run import SENSORS, Run
+from pneumo_ros.runs.run import METERED, SENSORS, Run
 
 SUPPLY = "measured_supply"
 IN_PLACE = {  # inputs that take the place of a constant: what they are, and the constant
@@ -25,8 +25,8 @@ def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
 def measuring(model: Model, runs: Sequence[Run]) -> Model:
     """The model with the recorded supply pressure in place of its constant, where every run has it.
 
-    Its mechanics alone, where no run has a valve command; one chamber alone, where no run has the other's pressure.
-    DataError where some have one.
+    It predicts the flow into chamber a where every run has that of a flow meter. Its mechanics alone, where no run has
+    a valve command; one chamber alone, where no run has the other's pressure. DataError where some have one.
     """
     alone = [run for run in runs if run.force_driven]
     if alone and not model.force_driven:
@@ -44,7 +44,9 @@ def measuring(model: Model, runs: Sequence[Run]) -> Model:
                 f"kind, or type --read-as no-pressure-{chamber} to judge the other chamber in all of them"
             )
         model = pneumatic(model)
-    return model.measuring([name for name in IN_PLACE if name in measured_inputs(runs)])
+    recorded = measured_inputs(runs)
+    metered = [METERED] if METERED in recorded and model.has_valve and "a" in {c.side for c in model.chambers} else []
+    return model.measuring([*metered, *(name for name in IN_PLACE if name in recorded)])
 
 
 def in_place(model: Model, found: Model, runs: Sequence[Run]) -> str:
@@ -105,6 +107,7 @@ def judged(model: Model, runs: Sequence[Run]) -> str:
         lacking += [f"chamber {one} (chamber_{one}/pressure would add it)" for one in assumed]
         if model.has_valve and _supply_unmeasured(runs):
             lacking.append("a sagging supply by itself (supply/pressure would add it)")
+        found += ["flow into chamber a"] if METERED in model.composition.measured else []
     if "load_force" not in measured_inputs(runs) and not model.imposed:
         lacking.append("load apart from friction (a load_cell would add it)")
     said = f"Judged: {', '.join(found)}."

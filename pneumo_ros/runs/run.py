@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 PARTS = 10  # the input is held over tenths of a sample, so that a command between two samples acts at its time
 _GAP = 2.5  # samples: a grid point farther than this from any measurement is not measured
 # the best sensors of such machines
-_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3}
+_FINEST = {"position_m": 1e-8, "pressure_a_pa": 1.0, "pressure_b_pa": 1.0, "force_n": 1e-3, "flow_a_kg_s": 1e-9}
 SENSORS = {  # topic of each input beside U
     "U_b": "valve_b/command",
     "p_a": "chamber_a/pressure",
@@ -31,7 +31,7 @@ SENSORS = {  # topic of each input beside U
     "imposed_velocity": "imposed motion",
     **{one.input: one.topic for one in MEASURED},
 }
-POSITION = "position_m"
+POSITION, METERED = "position_m", "metered_flow_a"
 _MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
 ATMOSPHERE = 101325.0  # Pa, for machine files without it
 
@@ -123,8 +123,7 @@ class Run:
     @cached_property
     def force(self) -> Array:
         """(n - 1,) driving force [N] at the samples of a force-driven run; it is linear in between."""
-        first, second = self.input[::PARTS], self.input[1::PARTS]
-        return np.asarray(1.5 * first - 0.5 * second)
+        return _at_samples(self.input)
 
     @property
     def signals(self) -> dict[str, Array]:
@@ -141,16 +140,20 @@ class Run:
     def judged(self) -> dict[str, Array]:
         """The signals (n,) that a model predicts: the measured ones, without position where the motion is an input.
 
-        Where it was imposed on a force-driven machine, force_n.
+        Where it was imposed on a force-driven machine, force_n. The flow that a flow meter reads, flow_a_kg_s.
         """
         if self.imposed and self.force_driven:
             return {"force_n": np.append(self.force, self.force[-1])}
         driving = {"position_m"} if self.imposed else set()
-        return {name: signal for name, signal in self.signals.items() if name not in driving | self.assumed}
+        found = {name: signal for name, signal in self.signals.items() if name not in driving | self.assumed}
+        if METERED in self.further and not self.force_driven:
+            held = self.further[METERED]
+            found["flow_a_kg_s"] = np.append(_at_samples(held), 1.5 * held[-1] - 0.5 * held[-2])
+        return found
 
     @cached_property
     def noise(self) -> dict[str, float]:
-        """Noise level of every measured signal, by its report name; at least 10 nm, 1 Pa and 1 mN, for simulations."""
+        """Noise level of every measured signal, by its report name; at least `_FINEST`, as a simulation has none."""
         every = self.signals | self.judged
         return {name: max(noise_level(signal), _FINEST[name]) for name, signal in every.items()}
 
@@ -256,6 +259,11 @@ def _force(recording: Recording) -> Array:
     """The driving force [N]: where the motion is imposed, that of the load cell."""
     cell = recording.load_cell if recording.imposed else None
     return _array(recording.effort if cell is None else cell)
+
+
+def _at_samples(held: Array) -> Array:
+    """(n - 1,) what is linear between the samples, at the samples, of its values over tenths of each."""
+    return np.asarray(1.5 * held[::PARTS] - 0.5 * held[1::PARTS])
 
 
 def _array(signal: Array | None) -> Array:

@@ -60,6 +60,25 @@ def test_chamber_a_is_judged_without_the_law_of_the_valve(folder: Path, capsys: 
     assert right["chamber_b"] == pytest.approx(wrong["chamber_b"], rel=1e-3)  # which has no flow meter
 
 
+def test_the_flow_is_predicted_by_the_law_of_the_valve(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_model(AXIS, folder / "true.yaml")
+    found = {}
+    for machine in ("true", "valve", "meter"):
+        main(["compare", str(folder / "run"), "--model", str(folder / f"{machine}.yaml"), "--json", "-"])
+        found[machine] = json.loads(capsys.readouterr().out)["runs"][0]["error"]["flow_a_kg_s"]["rms"]
+    assert found["true"] < 0.02 * found["valve"]  # 1.5 times the flow coefficients
+    assert found["meter"] > 0.3 * found["valve"]  # which takes the flow from the meter: its valve is as wrong
+
+
+def test_a_flow_that_one_recording_has_is_not_judged(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    one = read_recording(folder / "run")
+    signals = {"time": one.time, "position": one.position, "pressure_a": one.pressure_a, "pressure_b": one.pressure_b}
+    write_recording(folder / "without", **signals, voltage=voltage("steps", one.time))
+    runs = [str(folder / "run"), str(folder / "without")]
+    assert main(["compare", *runs, "--model", str(folder / "valve.yaml"), "--json", "-"]) == 0
+    assert "flow_a_kg_s" not in json.loads(capsys.readouterr().out)["runs"][0]["error"]
+
+
 def test_the_effect_is_tried_where_it_was_measured(folder: Path) -> None:
     model: Model = AXIS
     run = read_run(folder / "run", model).run
