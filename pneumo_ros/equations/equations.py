@@ -99,7 +99,9 @@ class Momentum:
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""
         run, reach = self.run, 0.5 * self.model["piston.stroke"] - 1e-3
-        slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
+        velocity = smooth(run.position, run.sample_time, 0.012, 3, 1)
+        turns = np.append(velocity[1:] * velocity[:-1] < 0.0, False)  # a light piston turns between two samples
+        slow = (np.abs(velocity) < SLIDING) | turns
         return _free_of(slow | ~run.measured | (np.abs(run.position) > reach), bump)
 
 
