@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.breakaway import REST
-from pneumo_ros.equations.equations import centred
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
@@ -73,10 +72,9 @@ def resting(run: Run) -> NDArray[np.bool_]:
 
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
-    """States and claimed mean derivatives (n, states) of the model itself, the latter centred at the samples."""
+    """States (n, states) of the model itself, and its claimed derivatives, means over the interval before a sample."""
     parts = _parts(model, QUICK)
-    states, mean = _drive(model, frame.run, frame.states, frame.run.averaged(model.inputs, parts), parts)
-    return states, centred(mean)
+    return _drive(model, frame.run, frame.states, frame.run.averaged(model.inputs, parts), parts)
 
 
 def _parts(model: Model, enough: int) -> int:
@@ -88,6 +86,7 @@ def _parts(model: Model, enough: int) -> int:
 class Followed:
     """A run by one parameter vector: its index, states (n, states), claimed derivatives of v and each pressure.
 
+    The latter (n, 1 + chambers) are means over the interval before each sample.
     `as_measured`: whether the frame's states are the measured ones.
     """
 
@@ -109,7 +108,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
         for rows in (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE)):
             states, mean = drive(model, frame, parameters[rows], parts)
             for k, x, m in zip(rows, states, mean, strict=True):
-                yield Followed(int(k), x, centred(m), drive is _as_measured)
+                yield Followed(int(k), x, m, drive is _as_measured)
 
 
 def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:

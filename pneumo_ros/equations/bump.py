@@ -12,7 +12,9 @@ Array = NDArray[np.float64]
 class Bump:
     """phi(t) = (1 - tau^2)^6 on a window of `width` samples; sums of a signal with these weights are weighted means.
 
-    phi, first, second (width,): weights of phi and of its first [1/s] and second [1/s2] derivative in time.
+    phi, first, second (width,): weights of phi and of its first [1/s] and second [1/s2] derivative in time. The
+    derivatives are those of sums by parts, differences of neighbours: sum phi x' = -sum first x and sum phi x'' =
+    sum second x hold for samples x, and not only for their integrals, with x' over the two intervals around a sample.
     """
 
     width: int
@@ -25,13 +27,11 @@ class Bump:
         """A bump over `duration` [s], at least nine samples."""
         half = max(round(0.5 * duration / sample_time), 4)
         tau = np.arange(-half, half + 1) / half
-        span, c = half * sample_time, 1.0 - tau**2
+        c, step = 1.0 - tau**2, sample_time
         phi = c**6 / np.sum(c**6)
-        first = -tau * c**5
-        first /= -np.sum(first * tau) * span  # exact for a constant rate with any number of samples
-        second = -12.0 * c**5 + 120.0 * tau**2 * c**4
-        second -= np.sum(second) * phi
-        second /= 0.5 * np.sum(second * tau**2) * span**2  # exact for a constant acceleration
+        around = np.pad(phi, 1)  # phi is 0 at the ends of its window, and beyond
+        first = (around[2:] - around[:-2]) / (2.0 * step)
+        second = (around[2:] - 2.0 * phi + around[:-2]) / step**2
         return cls(2 * half + 1, phi, first, second)
 
     def coarseness(self, factor: float) -> float:

@@ -10,6 +10,7 @@ the model's p'/p + gamma V'/V is gamma R T q / (p V). The momentum's friction ne
 int phi (dv'/dv) dy = -int (phi dv'/dv)' dy, is part of the noise of each residual.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ Mask = NDArray[np.bool_]
 
 SLIDING = 0.01  # m/s: below, friction is not a function of velocity and the momentum equation is not usable
 # Errors of sums over samples, measured on simulations without noise at 50 Hz to 4 kHz; see `Bump.coarseness`
-_MOMENTUM_SUMS, _CHAMBER_SUMS = 0.12, 4.0
+_MOMENTUM_SUMS, _CHAMBER_SUMS = 0.08, 0.05
 
 
 def centred(mean: Array) -> Array:
@@ -36,6 +37,17 @@ def centred(mean: Array) -> Array:
     A sum over samples is then the integral, with input steps included.
     """
     return np.asarray(0.5 * (mean + np.append(mean[1:], mean[-1:], axis=0)))
+
+
+def straight(function: Callable[..., Array], *signals: Array) -> Array:
+    """Mean (n,) of a function of signals (n,) that are straight between samples, over the interval before each.
+
+    By Simpson's rule; the first value repeats the second, as no interval ends there.
+    """
+    middle = function(*(0.5 * (signal[1:] + signal[:-1]) for signal in signals))
+    ends = function(*signals)
+    mean = (ends[1:] + 4.0 * middle + ends[:-1]) / 6.0
+    return np.append(mean[:1], mean)
 
 
 def moving_mass(model: Model) -> float:
@@ -60,7 +72,10 @@ class Momentum:
 
     @staticmethod
     def value(bump: Bump, mass: Array, position: Array, acceleration: Array) -> Array:
-        """Residual (windows,): `mass` (windows,) [kg] moves as measured, and as claimed by `acceleration` (n,)."""
+        """Residual (windows,): `mass` (windows,) [kg] moves as measured, and as claimed.
+
+        acceleration (n,): claimed, the mean over the interval before each sample.
+        """
         return MeasuredMotion.of(bump, position).value(mass, acceleration)
 
     def noise(self, bump: Bump) -> Array:
@@ -84,7 +99,9 @@ class Momentum:
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""
         run, reach = self.run, 0.5 * self.model["piston.stroke"] - 1e-3
-        slow = np.abs(smooth(run.position, run.sample_time, 0.012, 3, 1)) < SLIDING
+        velocity = smooth(run.position, run.sample_time, 0.012, 3, 1)
+        turns = np.append(velocity[1:] * velocity[:-1] < 0.0, False)  # a light piston turns between two samples
+        slow = (np.abs(velocity) < SLIDING) | turns
         return _free_of(slow | ~run.measured | (np.abs(run.position) > reach), bump)
 
 
@@ -102,15 +119,21 @@ class Balance:
         return self.model[self.chamber.volume] + self._slope * position
 
     def value(self, bump: Bump, states: Array, pressure_rate: Array) -> Array:
-        """Residual (windows,), with the pressure derivative (n,) that the model claims along the states."""
+        """Residual (windows,), with the pressure derivative (n,) that the model claims along the states.
+
+        It is the mean over the interval before each sample.
+        """
         return self.measured(bump, states).value(pressure_rate)
 
     def measured(self, bump: Bump, states: Array) -> "MeasuredChamber":
         """The part of the residual that depends on the states alone."""
         p = states[:, self.column]
         log = np.log(p) + self.gamma * np.log(self.volume(states[:, 0]))
-        rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, self._rate(states, np.zeros(len(p))))
-        return MeasuredChamber(bump, self.column, self._content(bump, states), rate, 1.0 / p)
+        # What the claim holds of the smoothed velocity is taken off as it was claimed, along the same straight lines.
+        per_pressure = straight(np.reciprocal, p)
+        squeezed = straight(self._squeezed, states[:, 0], states[:, 1], p)
+        rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, centred(squeezed * per_pressure))
+        return MeasuredChamber(bump, self.column, self._content(bump, states), rate, per_pressure)
 
     def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
         """Standard deviation (windows,) by sensor noise and by the error of sums.
@@ -135,6 +158,10 @@ class Balance:
         flow = self.gamma * self._slope * states[:, 1] / self.volume(states[:, 0])
         return np.asarray(pressure_rate / states[:, self.column] + flow)
 
+    def _squeezed(self, position: Array, velocity: Array, pressure: Array) -> Array:
+        """By how much the pressure (n,) falls [Pa/s] because the volume grows, without heat."""
+        return np.asarray(self.gamma * self._slope * velocity * pressure / self.volume(position))
+
     def _content(self, bump: Bump, states: Array) -> Array:
         """Mass per unit of ln p (windows,) [kg]."""
         R_T = self.model["air.gas_constant"] * self.model["air.temperature"]
@@ -154,8 +181,11 @@ class MeasuredMotion:
         return cls(bump, bump.apply(bump.second, position))
 
     def value(self, mass: Array, acceleration: Array) -> Array:
-        """Residual (windows,) [N] of `mass` (windows,) [kg], with the acceleration (n,) that a model claims."""
-        return np.asarray(mass * (self.acceleration - self.bump.apply(self.bump.phi, acceleration)))
+        """Residual (windows,) [N] of `mass` (windows,) [kg], with the acceleration (n,) that a model claims.
+
+        The claim is the mean over the interval before each sample.
+        """
+        return np.asarray(mass * (self.acceleration - self.bump.apply(self.bump.phi, centred(acceleration))))
 
 
 @dataclass(frozen=True)
@@ -163,7 +193,8 @@ class MeasuredChamber:
     """The measured state of a chamber in windows, independent of a model's claims.
 
     column: of its pressure among the states; content (windows,): mass per unit of ln p [kg]; rate (windows,): of inflow
-    per content [1/s]; per_pressure (n,): 1 / p [1/Pa].
+    per content [1/s]; per_pressure (n,): mean of 1 / p [1/Pa] over the
+    interval before each sample.
     """
 
     bump: Bump
@@ -173,8 +204,11 @@ class MeasuredChamber:
     per_pressure: Array
 
     def value(self, pressure_rate: Array) -> Array:
-        """Residual (windows,) [kg/s], with the pressure derivative (n,) that a model claims."""
-        claimed = self.bump.apply(self.bump.phi, pressure_rate * self.per_pressure)
+        """Residual (windows,) [kg/s], with the pressure derivative (n,) that a model claims.
+
+        The claim is the mean over the interval before each sample.
+        """
+        claimed = self.bump.apply(self.bump.phi, centred(pressure_rate * self.per_pressure))
         return np.asarray(self.content * (self.rate - claimed))
 
 

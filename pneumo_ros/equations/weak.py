@@ -67,15 +67,17 @@ def force_error(model: Model, run: Run) -> float:
     states, claimed = _along(model, run)
     mass = moving_mass(model)
     drive = drive_along(model, run, states) if model.force_driven else model.outputs(states)["drive"]
-    error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, claimed[:, 1]))
+    error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, centred(claimed[:, 1])))
     inside = measured_throughout(run, bump)
     return float(100.0 * np.linalg.norm(error[inside]) / np.linalg.norm(bump.apply(bump.phi, drive)[inside]))
 
 
 def _along(model: Model, run: Run) -> tuple[Array, Array]:
-    """States and claimed derivatives (n, states) along the measured signals, corrected for sensor effects."""
-    states, mean = driven(model, measured_frame(run, model.chambers), run)
-    return states, centred(mean)
+    """States (n, states) along the measured signals, corrected for sensor effects, and claimed derivatives.
+
+    The latter are means over the interval before each sample.
+    """
+    return driven(model, measured_frame(run, model.chambers), run)
 
 
 def _momentum(model: Model, run: Run, states: Array, claimed: Array) -> Residual:

@@ -8,10 +8,13 @@ import pytest
 from identify.making import POSITION_NOISE, own, recording, rig
 
 from pneumo_ros.equations.bump import Bump
+from pneumo_ros.equations.equations import Balance
+from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.equations.weak import Residual, equation_residuals
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.runs.run import Run, make_run
+from pneumo_ros.runs.sensors import driven
 
 EQUATIONS = ("momentum", "chamber_a", "chamber_b")
 RUNS = ("train_steps", "train_sweep", "train_slow", "train_creep")
@@ -108,6 +111,14 @@ def test_where_the_piston_rests_or_is_at_the_end_of_its_stroke_momentum_is_not_j
     assert np.interp(ends, run.time, beyond.position).max() < 0.999
 
 
+def test_a_piston_that_turns_between_two_samples_is_not_judged() -> None:
+    """By 0.2 m/s from one sample to the next: none is slow, but friction changes its sign within each window."""
+    model, _, run = own("steps", 2e-3, seconds=5.0)
+    shaken = replace(run, position=0.04 * np.sin(2.0 * np.pi * 8.0 * run.time + 0.3))
+    assert np.mean(np.abs(shaken.smoothed.motion[:, 1]) < 0.01) < 0.02
+    assert len(equation_residuals(model, shaken)["momentum"].value) == 0
+
+
 def test_nothing_moves() -> None:
     model, _, run = own("steps", seconds=5.0)
     still = replace(run, position=np.full(len(run), 0.1), input=np.zeros_like(run.input))
@@ -184,6 +195,29 @@ def test_the_test_function_takes_means_and_derivatives(samples: int) -> None:
     assert bump.apply(-bump.first, 3.0 * t) == pytest.approx(3.0, rel=1e-12)
     assert bump.apply(bump.second, 7.0 + 3.0 * t) == pytest.approx(0.0, abs=1e-7)
     assert bump.apply(bump.second, 0.5 * 9.81 * t**2) == pytest.approx(9.81, rel=1e-9)
+
+
+@pytest.mark.parametrize("samples", [9, 11, 51, 201])
+def test_sums_by_parts_hold_for_any_samples(samples: int) -> None:
+    """Not for smooth signals alone: the rate of a pressure jumps where the valve's command steps."""
+    bump, step = Bump.of((samples - 1) * 1e-3, 1e-3), 1e-3
+    x = np.random.default_rng(samples).normal(size=samples + 2)
+    rate, bend = (x[2:] - x[:-2]) / (2.0 * step), (x[2:] - 2.0 * x[1:-1] + x[:-2]) / step**2
+    assert bump.apply(-bump.first, x[1:-1]) == pytest.approx(bump.apply(bump.phi, rate), rel=1e-9)
+    assert bump.apply(bump.second, x[1:-1]) == pytest.approx(bump.apply(bump.phi, bend), rel=1e-9)
+
+
+@pytest.mark.parametrize("sample_time", [1e-3, 4e-3])
+def test_short_windows_of_the_true_chambers_leave_nothing(sample_time: float) -> None:
+    """Without noise, though the smoothed velocity is wrong where the motion turns: its part of the claim cancels."""
+    model, _, run = own("steps", sample_time, noisy=False)
+    states, claimed = driven(model, measured_frame(run, model.chambers), run)
+    bump = Bump.of(0.04, sample_time)
+    for chamber in model.chambers:
+        equation = Balance(model, chamber)
+        flow = np.abs(equation.value(bump, states, np.zeros(len(run)))).max()
+        left = np.abs(equation.value(bump, states, claimed[:, equation.column])).max()
+        assert left < 1e-4 * flow
 
 
 @pytest.mark.parametrize("samples", [11, 41, 101])
