@@ -1,10 +1,10 @@
 """Diagnosis of machines with a hidden effect: the independent rig simulator records, the diagnosis has to find it.
 
 Each seed is a machine worn by 5 %, with other excitation and noise. `single` hides one effect of the catalogue, in one
-of its shapes, `pair` two; strengths are drawn from a fifth of the usual size to all of it. `outside` hides an effect
-that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy`: the same, but with a coloured force and
-a friction texture that no model has. `--excitation` names the kind of recordings (`rig.excitation.EXCITATIONS`), or
-`drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals (Wilson), and the targets.
+of its shapes, `pair` two, `triple` three; strengths are drawn from a fifth of the usual size to all of it. `outside`
+hides an effect that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy`: the same, but with a
+coloured force and a friction texture that no model has. `--excitation` names the kind of recordings
+(`rig.excitation.EXCITATIONS`), or `drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals (Wilson), and the targets.
 
     python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--excitation usual] [--jobs 2]
 

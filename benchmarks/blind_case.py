@@ -23,10 +23,17 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "test"))  # the rig imports as `rig`
 
 STEP = 4e-5  # s, of the rig; twice that of its command line
+DECIDING = ("size", "share", "first", "known", "pays", "contained", "lag", "swing", "refused")  # of a candidate
 WEAKEST = 0.2  # share of full strength
 RANKED = 5  # candidates kept
-KINDS = ("single", "pair", "healthy", "outside", "rough", "rough_healthy")
-PARTNER = {"single": "healthy", "pair": "healthy", "rough": "rough_healthy"}  # the same machine with nothing hidden
+KINDS = ("single", "pair", "healthy", "outside", "rough", "rough_healthy", "triple")
+PARTNER = {
+    "single": "healthy",
+    "pair": "healthy",
+    "triple": "healthy",
+    "rough": "rough_healthy",
+}  # the same machine with nothing hidden
+SEVERAL = {"pair": 2, "triple": 3}  # kinds that hide several effects
 # Rooms of the package that a result depends on: `diagnose` and all that it imports
 JUDGED = ("plant", "records", "runs", "equations", "shooting", "identify", "compare", "diagnose")
 
@@ -65,8 +72,8 @@ def build_case(kind: str, seed: int, strength: float) -> Any:
     """The rig's case; KeyError for an unknown kind."""
     from rig import effects
 
-    if kind == "pair":
-        return effects.draw(seed, 2, (strength, strength))
+    if kind in SEVERAL:
+        return effects.draw(seed, SEVERAL[kind], (strength, strength))
     wishes = {
         "single": lambda: [effects.Wish(drawn_shape(seed, 6))],
         "rough": lambda: [effects.Wish(drawn_shape(seed, 7))],
@@ -136,9 +143,23 @@ def found(outcome: Any) -> dict[str, Any]:
         ],
         "ranking": [(r.effect, r.score.nats, r.holdout_gain, r.objections) for r in outcome.ranking[:RANKED]],
         "cannot_say": [*({**last.unseen, **last.undecided} if last else ())],
+        "decisions": [decision(step) for step in outcome.steps],
         "course": outcome.waterfall,
         "unexplained": left and {"equation": left.equation, "against": left.against, "rms": left.rms},
     }
+
+
+def decision(step: Any) -> list[dict[str, Any]]:
+    """What was decided about each candidate of a round, best first: all numbers that a decision asks for."""
+    return [
+        {
+            "effect": c.name,
+            "train": c.score.train,
+            "heldout": c.score.held,
+            **{key: getattr(c, key) for key in DECIDING},
+        }
+        for c in step.candidates
+    ]
 
 
 def diagnosed(kind: str, seed: int, strength: float, excitation: str = "usual") -> dict[str, Any]:

@@ -44,6 +44,31 @@ def test_a_machine_and_its_healthy_partner_are_recorded_alike(monkeypatch: pytes
     assert len({blind_case.drawn_excitation("single", seed) for seed in range(60)}) == 7  # all but the usual one
 
 
+def test_decisions_are_made_anew_with_numbers_halved_and_doubled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A leak of 12 nats is added, not if 16 are asked; a delay of 1.5 samples, not if two are; a droop never was."""
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import blind_numbers
+
+    def measured(effect: str, **values: Any) -> dict[str, Any]:
+        usual = {"train": 30.0, "heldout": 10.0, "size": 1.0, "share": 0.9, "first": True, "known": 0.0, "pays": 0.0}
+        return {**usual, "contained": False, "lag": np.inf, "swing": np.inf, "refused": "", "effect": effect, **values}
+
+    leak, late = measured("leak", train=7.0, heldout=5.0), measured("late", lag=1.5)
+    results = [
+        {"decisions": [[leak], [measured("late", refused="it does not pay")]]},
+        {"decisions": [[late, measured("leak")]]},
+        {"decisions": [[measured("droop", heldout=-1.0)]]},
+    ]
+    assert [blind_numbers.chosen(one) for one in results[0]["decisions"]] == ["leak", ""]
+    rows = [line.split() for line in blind_numbers.table(results).splitlines()[1:]]
+    counts = {(row[0], row[2 if row[0] != "SHARE_LEAST" else 4]): row for row in rows}
+    assert {key: "1/4" in row for key, row in counts.items()} == {
+        (name, factor): (name, factor) in {("MARGIN", "2"), ("RESOLVED", "2")}
+        for name in blind_numbers.NUMBERS
+        for factor in ("0.5", "2")
+    }
+
+
 def test_every_effect_that_shows_in_motion_has_a_term_in_the_library_of_pysindy(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -91,7 +91,7 @@ def add(
         larger = fitter.refit(fitter.start)
     for k, name in enumerate(fading):
         tell(0.1 + 0.1 * k / len(fading), f"fitting {name}")
-        larger = _with(fitter, larger, name)
+        larger = _with(fitter, larger, name, horizon)
     if fitter.known(base).names:  # none: sealed chambers of known volume
         base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
     found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
@@ -130,13 +130,13 @@ def check_addable(model: Model, effects: Sequence[str]) -> None:
             )
 
 
-def _with(fitter: Fitter, model: Model, name: str) -> Model:
+def _with(fitter: Fitter, model: Model, name: str, horizon: float) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
     fit = fitter.fit(model)
     own = coordinates(model.library.find(name))
     begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
-    return fitter.simplest(fitter.refit(fitter.extended(model, best)), name)
+    return fitter.simplest(fitter.refit(fitter.extended(model, best)), name, horizon)
 
 
 def _part(tell: Progress, first: float, last: float, what: str) -> Progress:

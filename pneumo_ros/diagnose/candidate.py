@@ -14,6 +14,9 @@ MATERIAL = 0.05  # of the usual size: a smaller effect does not matter
 SHARE_LEAST = (0.25, 0.5)  # of an equation's misfit beyond noise, which the first and later effects must remove
 
 
+RESOLVED = 1.0  # samples: a shorter delay, or half a period, is not seen at the rate of the recording
+
+
 @dataclass(frozen=True)
 class Candidate:
     """One candidate: its fit, and its measures on held-out runs."""
@@ -71,9 +74,9 @@ class Candidate:
             found.append(f"its size is only {self.size:.2g} times the usual one")
         if self.partial:
             found.append(f"removes only {100.0 * self.share:.0f} % of the misfit beyond noise")
-        if self.lag < 1.0:
+        if self.lag < RESOLVED:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")
-        if self.swing < 1.0:
+        if self.swing < RESOLVED:
             found.append("it oscillates within two samples, which no recording at this rate shows")
         if self.refused:
             found.append(self.refused)

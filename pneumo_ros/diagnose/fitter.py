@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.hypothesis import (
     missing,
     weights,
 )
+from pneumo_ros.diagnose.prediction import typical_error, windowed
 from pneumo_ros.diagnose.score import Scoring
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
@@ -28,12 +29,13 @@ from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.physical import physical
 from pneumo_ros.shooting.refit import default_free
+from pneumo_ros.shooting.windows import HORIZON
 
 Array = NDArray[np.float64]
 
 BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: deviation of a uniform prior within 5 %, and its usual change
 PROBE_SHARE = 0.005  # of a usual change of a base parameter, or of a usual size of an effect
-AS_MUCH = 3.0  # log likelihood: the most that a simpler effect may lose
+AS_MUCH = 3.0  # nats: the most that an effect with sizes of one kind alone may lose
 SCREENED, SAMPLES = 50.0, 50_000  # s of recordings by which candidates are ranked first, and samples, if that is longer
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -98,22 +100,36 @@ class Fitter:
             self.limits.append(f"a fit of '{', '.join(fitted.model.effects)}' did not settle in {fitted.taken} rounds")
         return fitted.model
 
-    def simplest(self, model: Model, name: str) -> Model:
-        """The model, or the model refitted with one size of its effect `name` neutral, if that explains as much.
+    def simplest(self, model: Model, name: str, horizon: float = HORIZON) -> Model:
+        """The model, or the model refitted with sizes of one kind alone of its effect `name`, if that explains as much.
 
-        Only for sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other
-        over wide ranges, and a fit of both may end in a valley far from the true values. Sizes that add nothing by
-        default are tried first: the usual shape is taken wherever it explains as much.
+        Only for sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other over
+        wide ranges, and a fit of both may end in a valley far from the true values. Of kinds that explain as much as
+        each other the one is taken that predicts the training recordings best, in windows of `horizon` [s]: equations
+        average over what sets in fast, and predictions show it.
         """
         own = coordinates(model.library.find(name))
         if len(kinds(own)) == 1 or is_profile(own):
             return model
-        sizes = [c for c in own if c.is_size and model[c.name] != c.neutral]
-        for size in sorted(sizes, key=lambda c: model.specification(c.name).default != c.neutral):
-            simpler = self.refit(model.with_parameters({size.name: size.neutral}), fixed=(size.name,))
-            if self.gain(simpler, model) > -AS_MUCH:
-                return simpler
-        return model
+        forms = [self._alone(model, own, kind) for kind in kinds(own)]
+        gains = [self.gain(form, model) for form in forms]
+        least = max(0.0, *gains) - AS_MUCH
+        alike = [form for form, gain in zip(forms, gains, strict=True) if gain > least]
+        if len(alike) < 2:
+            return alike[0] if alike else model
+        return min(alike, key=lambda form: typical_error(windowed(form, self.train.runs, horizon)))
+
+    def _alone(self, model: Model, effect: Sequence[Coordinate], kind: Sequence[Coordinate]) -> Model:
+        """The model refitted with the sizes of an effect that are not of one kind neutral; those at their usual size.
+
+        A size that is not neutral already starts at its value.
+        """
+        others = {c.name: c.neutral for c in effect if c.neutral is not None and c not in kind}
+        if all(model[n] == value for n, value in others.items()):
+            return model
+        off = all(model[c.name] == c.neutral for c in kind)
+        begin = others | ({c.name: c.typical for c in kind} if off else {})
+        return self.refit(model.with_parameters(begin), fixed=tuple(others))
 
     def against(self, model: Model, name: str, values: Mapping[str, float]) -> float:
         """Log likelihood that the training evidence loses when an effect of these `values` is added to `model`.

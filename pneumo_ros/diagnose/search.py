@@ -164,7 +164,7 @@ class Search:
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
         """The refitted model with an effect added, without the effects whose size vanishes, and their names."""
         new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
-        new = self.polish(self.fitter.simplest(new, candidate.name))
+        new = self.polish(self.fitter.simplest(new, candidate.name, self.horizon))
         std = self.fitter.deviations(new)
         older = [n for n in self.fitter.added(new) if n != candidate.name and undetermined(new, n, std)]
         small = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL and n not in self.paying]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.candidate import Candidate
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, kinds
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
@@ -40,7 +40,10 @@ QUANTILES = (0.5, 0.75)  # of the events' errors: the first poor one is used
 
 @dataclass(frozen=True)
 class Slipping:
-    """A candidate on the events: the mechanics with it, and its errors per training and held-out event."""
+    """A candidate on the events: the mechanics with it, and its errors per training and held-out event.
+
+    Its sizes of one kind were fitted, and its shapes: `std` names them.
+    """
 
     name: str
     model: Model
@@ -104,16 +107,20 @@ class SlipFits:
     def tried(self, names: Sequence[str]) -> list[Slipping]:
         """The named effects with the best starts, fitted to the training events; smallest errors first.
 
-        The search stops at an effect that leaves hardly more than noise.
+        Sizes of different kinds, which replace each other, are fitted one kind at a time, and the best is kept. The
+        search stops at an effect that leaves hardly more than noise.
         """
         most_are_poor = self.q == QUANTILES[0]
         tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
         begins = tangents.best if tangents else partial(by_sizes, self.alone, self.found)
+        forms = [(name, own) for name in names for own in kinds(coordinates(self.alone.library.find(name)))]
         with ThreadPoolExecutor(2) as pool:
-            begin = list(pool.map(begins, names))
+            begun = list(pool.map(lambda form: begins(*form), forms))
+        ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
         result = list[Slipping]()
-        for name, (_, model) in sorted(zip(names, begin, strict=True), key=lambda one: one[1][0])[:MOST_FITTED]:
-            result.append(self._fitted(name, model))
+        for best in list(dict.fromkeys(name for (name, _), _ in ranked))[:MOST_FITTED]:
+            fits = [self._fitted(name, model, own) for (name, own), (_, model) in ranked if name == best]
+            result.append(min(fits, key=self._left))
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
         for k, c in sorted(enumerate(result), key=lambda one: self._left(one[1])):
@@ -122,14 +129,16 @@ class SlipFits:
                 break
         return sorted(result, key=self._left)
 
-    def _fitted(self, name: str, begin: Model) -> Slipping:
+    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
+        """Fitted from `begin`, with the sizes `own` and all shapes of the effect free."""
         prior, effect = friction_priors(self.alone, self.known), coordinates(self.alone.library.find(name))
-        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in effect}
+        free = [c for c in effect if c in own or not c.is_size]
+        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in free}
         refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
-        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in effect}
+        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in free}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
         asked_for = self._share(held) >= SHARE_REMOVED
-        loss = self.against(name, {n: fitted[n] for n in std}) if asked_for else 0.0
+        loss = self.against(name, {c.name: fitted[c.name] for c in effect}) if asked_for else 0.0
         return Slipping(name, fitted, train, held, std, loss)
 
     def _resized(self, c: Slipping) -> Slipping:
@@ -146,10 +155,11 @@ class SlipFits:
     def _followed(self, c: Slipping, factor: float) -> Slipping:
         """The last improvement among fits that each start at `factor` times the previous size."""
         effect = coordinates(self.alone.library.find(c.name))
+        own = [size for size in effect if size.is_size and size.name in c.std]
         for _ in range(RESIZINGS):
             if self._explains(c):
                 return c
-            new = self._fitted(c.name, c.model.with_parameters(resized(effect, c.model, factor)))
+            new = self._fitted(c.name, c.model.with_parameters(resized(own, c.model, factor)), own)
             if not self._better(new, c):
                 return c
             c = new

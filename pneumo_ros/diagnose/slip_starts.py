@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, kinds
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.slips import Slips, errors, friction_priors
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.problem import Problem
@@ -22,8 +22,11 @@ _SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
 _NEAR = 0.2  # of the usual size: range in which a tangent is trusted
 
 
-def by_sizes(alone: Model, found: Slips, name: str) -> Begin:
-    """The best of some sizes of an effect beside `alone`, then of some shapes, by the median error of some events."""
+def by_sizes(alone: Model, found: Slips, name: str, own: tuple[Coordinate, ...]) -> Begin:
+    """The best of some sizes of an effect beside `alone`, then of some shapes, by the median error of some events.
+
+    `own`: its sizes of one kind; the others stay neutral.
+    """
     effect = coordinates(alone.library.find(name))
     some = np.arange(0, len(found.train_rows), ONE_IN)
 
@@ -31,10 +34,10 @@ def by_sizes(alone: Model, found: Slips, name: str) -> Begin:
         model = alone.with_effects([*alone.effects, name], values)
         return float(np.median(errors(model, found.train(model).pick(some)))), model
 
-    options = [tried(_values(effect, own, share)) for own in kinds(effect) for share in _SIZES]
+    options = [tried(_values(effect, own, share)) for share in _SIZES]
     best = min(options, key=lambda option: option[0])[1]
-    own = {c.name: best[c.name] for c in effect}
-    options += [tried(own | shape) for shape in _shapes(effect)]
+    values = {c.name: best[c.name] for c in effect}
+    options += [tried(values | shape) for shape in _shapes(effect)]
     return min(options, key=lambda option: option[0])
 
 
@@ -55,14 +58,13 @@ class Tangents:
         """The starts of the events are fitted here; `known`: standard deviations of the friction from elsewhere."""
         return cls(alone, found, fit_starts(alone, found.train(alone)), friction_priors(alone, known))
 
-    def best(self, name: str) -> Begin:
-        """The effect along its best tangent, and minus the loss that a step along it would save."""
+    def best(self, name: str, own: tuple[Coordinate, ...]) -> Begin:
+        """The effect along its best tangent, and minus the loss that a step along it would save.
+
+        `own`: its sizes of one kind; the others stay neutral.
+        """
         effect = coordinates(self.alone.library.find(name))
-        options = [
-            self._along(name, own, _values(effect, own, 0.0) | shape)
-            for own in kinds(effect)
-            for shape in ({}, *_shapes(effect))
-        ]
+        options = [self._along(name, own, _values(effect, own, 0.0) | shape) for shape in ({}, *_shapes(effect))]
         return min(options, key=lambda option: option[0])
 
     def _along(self, name: str, own: tuple[Coordinate, ...], values: dict[str, float]) -> Begin:

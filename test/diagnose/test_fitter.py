@@ -1,6 +1,7 @@
 """A model fitted with possible new effects: sizes that replace each other, and parameters with known values."""
 
 from functools import lru_cache
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -31,6 +32,22 @@ def test_a_size_that_another_one_replaces_is_left_neutral() -> None:
     """For a Gaussian Stribeck curve, exponent 2 and no rational tail; a tail with another exponent is similar."""
     found = fitter(STRIBECK).simplest(with_effect(STRIBECK, exponent=1.6, rational=0.5), STRIBECK)
     assert 0.0 in (found[f"{STRIBECK}.rational"], found[f"{STRIBECK}.exponent"] - 2.0)
+
+
+@pytest.mark.parametrize(("behind", "best"), [(0.0, "rational"), (10.0, "exponent")])
+def test_of_kinds_that_explain_as_much_the_one_that_predicts_best_is_kept(
+    behind: float, best: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tail predicts twice as well; it is taken unless the equations lose more than 3 nats by it."""
+    tail = f"{STRIBECK}.rational"
+    monkeypatch.setattr(Fitter, "refit", lambda _self, model, fixed=(): model)
+    monkeypatch.setattr(Fitter, "gain", lambda _self, new, _old: -behind if new[tail] else 0.0)
+    monkeypatch.setattr(
+        import_module(Fitter.__module__), "windowed", lambda model, *_: {"y": 1.0 if model[tail] else 2.0}
+    )
+    found = fitter(STRIBECK).simplest(with_effect(STRIBECK, exponent=1.3, rational=0.0), STRIBECK)
+    assert found[f"{STRIBECK}.exponent"] == (1.3 if best == "exponent" else 2.0)
+    assert (found[tail] > 0.0) == (best == "rational")
 
 
 def test_sizes_of_one_kind_are_all_kept() -> None:

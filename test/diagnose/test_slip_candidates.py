@@ -1,12 +1,14 @@
 """Effects that only breakaways and reversals show: they must determine the size, and enough of them must show it."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose import slip_candidates
 from pneumo_ros.diagnose.candidate import Candidate
-from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.slip_candidates import SlipFits, Slipping, as_candidate, deviations_better, paired, resized
 from pneumo_ros.diagnose.slips import Slips
 from pneumo_ros.plant import Model, load_model
@@ -84,7 +86,7 @@ BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # initial sizes of the candidates
 class Stuck(SlipFits):
     """Fits that stay at their start; the misfit is the distance from the true lag; the other candidate is refused."""
 
-    def _fitted(self, name: str, begin: Model) -> Slipping:
+    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
         size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
         error = np.full(40, 1.2 if name != LAG else 1.0 + 1.5 * abs(np.log2(size / TRUE)))
         return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0)
@@ -94,7 +96,7 @@ class Stuck(SlipFits):
 def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where another one explains more but contradicts the equations along the motion."""
 
-    def begins(alone: Model, _found: Slips, name: str) -> tuple[float, Model]:
+    def begins(alone: Model, _found: Slips, name: str, _own: Sequence[Coordinate]) -> tuple[float, Model]:
         key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)
         return 1.0, alone.with_effects([*alone.effects, name], {key: BEGUN[name]})
 

@@ -138,6 +138,22 @@ def test_emptied_gas_is_cold_and_follows_the_adiabat_of_what_stays() -> None:
     assert cold == pytest.approx(ratio ** (0.4 / 1.4), rel=5e-3)
 
 
+def test_a_temperature_that_nothing_reads_stays_bounded() -> None:
+    """Driven along pressures that hold while the valve empties a warm chamber: no gas would be left, and T_g no end."""
+    measured, voltage = np.tile([0.0, 0.0, 5e5, 5e5], (20_000, 1)), np.full(19_999, -2.0)
+    states, claimed = dict[float, np.ndarray](), dict[float, np.ndarray]()
+    for rate in (0.0, 4.0):
+        model = chambers("heat_exchange", rate=rate)
+        rest = model.state(theta_a=200.0, theta_b=200.0)[4:]
+        states[rate], claimed[rate] = model.follow(measured, voltage, rest)
+    thetas = [model.states.index(f"theta_{side}") for side in "ab"]
+    assert np.abs(states[4.0][:, thetas]).max() == 200.0
+    assert np.abs(states[0.0][:, thetas]).max() < 1e6, "of a bounded source that fades at 0.1 1/s"
+    plain = machine("lugre_friction").with_parameters(HELD)
+    _, alone = plain.follow(measured, voltage, plain.state()[4:])
+    assert claimed[0.0][:, 2:4] == pytest.approx(alone[:, 2:4], rel=1e-9)
+
+
 @pytest.mark.parametrize(("rate", "share"), [(0.3, 0.0), (1.0, 0.0), (4.0, 0.0), (50.0, 0.0), (1.0, 0.3), (4.0, 1.0)])
 def test_heat_moves_no_mass(rate: float, share: float) -> None:
     """p V / (R T_g) of both chambers changes by the flow through the ports: theta and p are consistent."""

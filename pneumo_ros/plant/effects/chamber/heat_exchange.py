@@ -4,13 +4,14 @@ from pneumo_ros.plant.effect import Effect, Parameter, State, pi, sqrt
 
 SLOWEST = 0.1  # 1/s: below it the effect fades into the base model, whose gas leaves at the wall's temperature
 PRESSURE = 4e5  # Pa, of the gas at mid stroke whose rate is given
+COLDEST, HOTTEST = 0.1, 10.0  # of the wall's temperature: no gas of a cylinder is beyond, and driven states may be
 
 
 def film_rate(
     p: float, V: float, area: float, middle: float, theta: float, T: float, rate: float, film: float
 ) -> float:
     """Rate [1/s] of a film whose coefficient grows with sqrt(p T_g) over the walls that the gas touches."""
-    warm = max(1.0 + theta / T, 0.1)
+    warm = min(max(1.0 + theta / T, COLDEST), HOTTEST)
     around = 4.0 / sqrt(4.0 * area / pi)
     touched = (2.0 * area + around * V) / (2.0 * area + around * middle)
     return rate * (1.0 - film + film * touched * middle / V * warm * sqrt(warm * PRESSURE / p))
@@ -19,14 +20,17 @@ def film_rate(
 def exchange(
     p: float, V: float, work: float, q: float, theta: float, T: float, R: float, gamma: float, rate: float, share: float
 ) -> tuple[float, float]:
-    """Heat into the gas of a chamber [W] and rate of change of theta [K/s]; work = p V'."""
-    T_g = max(T + theta, 0.1 * T)
+    """Heat into the gas of a chamber [W] and rate of change of theta [K/s]; work = p V'.
+
+    Where the rate is 0 theta acts on nothing, and nothing would bring it back: it fades at the slowest rate.
+    """
+    T_g = min(max(T + theta, COLDEST * T), HOTTEST * T)
     excess = max(gamma - 1.0, 1e-9)  # at gamma = 1 heat makes no pressure
     kept = min(rate / SLOWEST, 1.0) * R * theta * min(q, 0.0)  # by gas that leaves colder than the base model says
     at_once = share * (work - R * T * q - kept)
     heat = (gamma * kept - p * V * rate * theta / T_g) / excess + at_once
     warming = (gamma * (R * T * q + kept) - (gamma - 1.0) * (work - at_once) - R * T_g * q) / (p * V)
-    return heat, T_g * warming - rate * theta
+    return heat, T_g * warming - max(rate, SLOWEST) * theta
 
 
 class HeatExchange(Effect):
@@ -69,4 +73,5 @@ class HeatExchange(Effect):
         heat_b, der_theta_b = exchange(
             p_b, V_b, work_b, port_flow_b + flow_b, theta_b, T, R, gamma, rate_theta_b, share
         )
+        rate_theta_a, rate_theta_b = max(rate_theta_a, SLOWEST), max(rate_theta_b, SLOWEST)
         return heat_a, heat_b, der_theta_a, der_theta_b, rate_theta_a, rate_theta_b
