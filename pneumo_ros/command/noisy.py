@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
 
 MEASURED = {"position": "m", "pressure_a": "Pa", "pressure_b": "Pa"}  # signals that take noise, and its units
 EXAMPLE = "position=5e-6,pressure_a=200,pressure_b=200"
@@ -41,7 +42,7 @@ def _size(name: str, text: str) -> float:
 
 
 def with_noise(
-    signals: Mapping[str, Any], noise: Mapping[str, float], random: np.random.Generator, *, force_driven: bool = False
+    signals: Mapping[str, Any], noise: Mapping[str, float], random: "Generator", *, force_driven: bool = False
 ) -> dict[str, Any]:
     """The signals, some with white noise of standard deviation `noise` [m, Pa]; all as they are where there is none.
 
