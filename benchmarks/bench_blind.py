@@ -7,6 +7,7 @@ coloured force and a friction texture that no model has. `--excitation` names th
 (`rig.excitation.EXCITATIONS`), or `drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals (Wilson), and the targets.
 
     python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--excitation usual] [--jobs 2]
+    python benchmarks/bench_blind.py --kind single=24,pair=3    # seeds of each kind
 
 Each result is appended to a file as one line of JSON. Cases that it already holds for the same code are not run
 again, so that an interrupted run continues. `--seeds 0` prints the tables of the results there are; --code those of
@@ -36,17 +37,29 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=2, help="how many (default 2)")
     parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--kind", choices=(*KINDS, "all"), default="all")
+    parser.add_argument(
+        "--kind", default="all", type=counted, metavar="KIND[=N],...", help=f"{', '.join(KINDS)}, or all (default)"
+    )
     parser.add_argument("--strength", type=float, help="share of full strength, for all; else drawn from 0.2 to 1")
     parser.add_argument("--excitation", choices=(*EXCITATIONS, "drawn"), default="usual", help="what is recorded")
     add_options(parser, "blind.jsonl", jobs=2)
     return parser.parse_args()
 
 
+def counted(text: str) -> dict[str, int | None]:
+    """How many seeds of each kind, None for --seeds; ValueError, as argparse expects, for what is no kind or number."""
+    if text == "all":
+        return dict.fromkeys(KINDS)
+    parts = (one.partition("=") for one in text.split(","))
+    found = {kind: int(count) if equals else None for kind, equals, count in parts}
+    if unknown := set(found) - set(KINDS):
+        raise argparse.ArgumentTypeError(f"{', '.join(unknown)} is not among {', '.join(KINDS)}")
+    return found
+
+
 def wanted(options: argparse.Namespace) -> list[Job]:
     """The requested cases, seed by seed, so that an interrupted run has some of every kind."""
-    kinds = KINDS if options.kind == "all" else (options.kind,)
-    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    counts = {kind: options.seeds if count is None else count for kind, count in options.kind.items()}
     same, excitation = options.strength, options.excitation
     return [
         (
@@ -55,8 +68,10 @@ def wanted(options: argparse.Namespace) -> list[Job]:
             drawn_strength(kind, seed) if same is None or kind in PARTNER.values() else same,
             drawn_excitation(kind, seed) if excitation == "drawn" else excitation,
         )
-        for seed in seeds
-        for kind in kinds
+        for k in range(max(counts.values()))
+        for kind, count in counts.items()
+        if k < count
+        for seed in [options.first_seed + k]
     ]
 
 

@@ -69,6 +69,24 @@ def test_decisions_are_made_anew_with_numbers_halved_and_doubled(monkeypatch: py
     }
 
 
+def test_each_kind_of_blind_case_may_have_a_number_of_seeds_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import bench_blind
+
+    def cases(*options: str) -> list[tuple[str, int]]:
+        monkeypatch.setattr("sys.argv", ["bench_blind.py", *options])
+        return [(kind, seed) for kind, seed, *_ in bench_blind.wanted(bench_blind.arguments())]
+
+    assert cases("--kind", "single=3,healthy=1", "--first-seed", "7") == [
+        ("single", 7), ("healthy", 7), ("single", 8), ("single", 9),
+    ]  # fmt: skip
+    assert cases("--kind", "pair", "--seeds", "2") == [("pair", 0), ("pair", 1)]
+    assert len(cases("--seeds", "2")) == 2 * len(bench_blind.KINDS)
+    for wrong in ("twin", "single=", "single=2,twin=1"):
+        with pytest.raises(SystemExit):
+            cases("--kind", wrong)
+
+
 def test_every_effect_that_shows_in_motion_has_a_term_in_the_library_of_pysindy(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

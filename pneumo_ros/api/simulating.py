@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +10,9 @@ from numpy.typing import ArrayLike
 from pneumo_ros import __version__
 from pneumo_ros.api.inputs import Machine, Progress, machine
 from pneumo_ros.command.inputs import Drive, parse_drive
+from pneumo_ros.command.noisy import with_noise
 from pneumo_ros.command.playing import RATE, Plan, drive_plan, played, recorded, replay_plan
 from pneumo_ros.errors import UsageError
-from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Model
 from pneumo_ros.reading.read import Reading, run_of
 from pneumo_ros.records import Recording, contract
@@ -48,22 +47,9 @@ def simulate(
     plan = _plan(plant, drive, seconds, rate, position)
     tell = progress or (lambda share, text: None)
     states = played(plant, plan, lambda share: tell(share, "simulating"))
-    made = _recording(plant, plan, recorded(plant, plan, states), name)
-    return made if noise is None else _noisy(made, noise, seed)
-
-
-def _noisy(recording: Recording, noise: Mapping[str, float], seed: int) -> Recording:
-    """The recording with white noise on some of its measured signals."""
-    every = ("position", "pressure_a", "pressure_b")
-    found = {name: getattr(recording, name) for name in every if getattr(recording, name) is not None}
-    if unknown := [name for name in noise if name not in found]:
-        raise UsageError(unknown_name("measured signal", unknown[0], found))
     random = np.random.default_rng(seed)
-    drawn = {
-        name: found[name] + random.normal(0.0, size, len(recording)) for name, size in noise.items() if name in found
-    }
-    velocity, effort = None, recording.effort if recording.force_driven else None
-    return replace(recording, velocity=velocity, effort=effort, **drawn)
+    signals = with_noise(recorded(plant, plan, states), noise or {}, random, force_driven=plant.force_driven)
+    return _recording(plant, plan, signals, name)
 
 
 def _plan(
@@ -101,7 +87,7 @@ def _recording(model: Model, plan: Plan, signals: dict[str, np.ndarray], name: s
         voltage = np.asarray(volts)[np.maximum(last, 0)]
     return Recording(
         name=name, path=Path(name), namespace="", joint_name=contract.JOINT, start_ns=time.time_ns(),
-        time=signals["time"], position=signals["position"], velocity=signals["velocity"],
+        time=signals["time"], position=signals["position"], velocity=signals.get("velocity"),
         effort=signals.get("effort"), pressure_a=signals.get("pressure_a"), pressure_b=signals.get("pressure_b"),
         supply_pressure=None, voltage=voltage, command_time=times, command=volts,
         description={"schema_version": 1, "version": __version__, "model": model.as_dict(), "seed": None},

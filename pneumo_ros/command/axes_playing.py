@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pneumo_ros import __version__
 from pneumo_ros.command.console import Console
 from pneumo_ros.command.inputs import FORMS, parse_drive
+from pneumo_ros.command.noisy import with_noise
 from pneumo_ros.command.playing import CHUNK, SECONDS, Plan, drive_plan, recorded, replay_plan
 from pneumo_ros.command.recordings import read_one
 from pneumo_ros.errors import DataError, UsageError
@@ -109,11 +110,22 @@ def played_together(machine: "Machine", plans: Mapping[str, Plan], progress: "Ca
 
 
 def write_together(
-    path: str, machine: "Machine", plans: Mapping[str, Plan], states: Array
+    path: str,
+    machine: "Machine",
+    plans: Mapping[str, Plan],
+    states: Array,
+    noise: Mapping[str, float],
+    random: np.random.Generator,
+    seed: int | None,
 ) -> dict[str, dict[str, Any]]:
-    """Write the recording of all axes; returns the signals of each."""
-    head = {"schema_version": 1, "version": __version__, "seed": None}
-    signals = {axis: recorded(machine.axes[axis], plans[axis], own) for axis, own in machine.split(states).items()}
+    """Write the recording of all axes, each with `noise` as `with_noise` has it; returns the signals of each."""
+    head = {"schema_version": 1, "version": __version__, "seed": seed}
+    signals = {
+        axis: with_noise(
+            recorded(machine.axes[axis], plans[axis], own), noise, random, force_driven=machine.axes[axis].force_driven
+        )
+        for axis, own in machine.split(states).items()
+    }
     contents = {
         axis: {**one, **plans[axis].commands, "description": head | {"model": machine.axes[axis].as_dict()}}
         for axis, one in signals.items()

@@ -151,3 +151,40 @@ def test_sensor_effects_are_in_the_recording(tmp_path: Path) -> None:
     assert wrong.pressure_b == pytest.approx(right.pressure_b)
     assert pn.compare(wrong, off).explained
     assert not pn.compare(wrong, axis).explained
+
+
+def test_noise_is_of_the_size_and_the_seed_that_were_asked() -> None:
+    common = ["simulate", "--input", "sine:3,0.5", "--seconds", "5", "--quiet", "--out"]
+    noise = ["--noise", "position=5e-6", "--noise", "pressure_a=200,pressure_b=100"]
+    assert main([*common, "clean"]) == 0
+    for out, seed in (("one", "1"), ("same", "1"), ("other", "2")):
+        assert main([*common, out, *noise, "--seed", seed]) == 0
+    clean, one, same, other = (read_recording(name) for name in ("clean", "one", "same", "other"))
+    for signal, size in (("position", 5e-6), ("pressure_a", 200.0), ("pressure_b", 100.0)):
+        drawn = getattr(one, signal) - getattr(clean, signal)
+        assert np.std(drawn) == pytest.approx(size, rel=0.1)  # 5001 samples: 1 % of its standard error
+        np.testing.assert_array_equal(getattr(same, signal), getattr(one, signal))
+        assert np.std(getattr(other, signal) - getattr(one, signal)) == pytest.approx(size * 2**0.5, rel=0.1)
+    np.testing.assert_array_equal(one.voltage, clean.voltage)
+    assert one.velocity is None, "a rig seldom measures it"
+    assert one.effort is None
+    assert (one.description["seed"], other.description["seed"]) == (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--noise", "5e-6"], "names no signal"),
+        (["--noise", "presure_a=200"], "pressure_a"),
+        (["--noise", "position=small"], "a standard deviation in m"),
+        (["--noise", "position=-1"], "at least 0"),
+        (["--noise", "position=nan"], "at least 0"),
+        (["--noise", "position=1e-6,position=2e-6"], "twice"),
+        (["--seed", "3"], "goes with --noise"),
+        (["--noise", "position=1e-6", "--seed", "-3"], "at least 0"),
+    ],
+)
+def test_noise_that_cannot_be_is_named(options: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "--input", "constant:1", "--seconds", "0.1", "--out", "run", *options]) == 2
+    assert says in capsys.readouterr().err
+    assert not Path("run").exists()

@@ -61,6 +61,16 @@ def test_an_axis_without_an_input_keeps_its_valve_closed() -> None:
         read_recording("one")
 
 
+def test_every_axis_has_noise_of_its_own() -> None:
+    assert simulated(*MOVES, "--seconds", "0.8", "--out", "clean") == 0
+    assert simulated(*MOVES, "--seconds", "0.8", "--out", "noisy", "--noise", "position=5e-6", "--seed", "4") == 0
+    drawn = [read_recording("noisy", axis).position - read_recording("clean", axis).position for axis in two().axes]
+    for one in drawn:
+        assert np.std(one) == pytest.approx(5e-6, rel=0.2)
+    assert abs(np.corrcoef(drawn)[0, 1]) < 0.2  # 801 samples: 0.035 is its standard deviation
+    assert read_recording("noisy", "elbow").velocity is None
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [

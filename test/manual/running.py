@@ -21,13 +21,16 @@ UP = re.compile("ready|recording")  # what a node says then
 _ASSIGNED = re.compile(r"^\w+=")
 
 
-def environment() -> dict[str, str]:
-    """The commands of this environment first, and the package as it is here; a `make` begun here is the first one."""
+def environment(folder: Path) -> dict[str, str]:
+    """The commands of this environment first, and the package as it is here; a `make` begun here is the first one.
+
+    PAGE is the folder in which the page's statements run.
+    """
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     if not shutil.which("ros2"):
         path += f"{os.pathsep}{Path(__file__).parent / 'without_ros'}"
     kept = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
-    return kept | {"PATH": path, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
+    return kept | {"PATH": path, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1", "PAGE": str(folder)}
 
 
 def run(statement: Statement, before: list[Statement], folder: Path) -> None:
@@ -39,7 +42,7 @@ def run(statement: Statement, before: list[Statement], folder: Path) -> None:
     place = ROOT if re.match(AT_THE_TOP, statement.text) else folder
     with beside(shortened(statement.text), folder, lambda text, folder: serving(text, UP, folder)) as text:
         script = "\n".join([*(one.text for one in before if _ASSIGNED.match(one.text)), text])
-        done = typed(["bash", "-c", script], answers, cwd=place, env=environment())
+        done = typed(["bash", "-c", script], answers, cwd=place, env=environment(folder))
     assert done.returncode in INSIDE, f"{statement.text}\nexit code {done.returncode}\n{done.stdout}{done.stderr}"
     assert "Traceback (most recent call last)" not in done.stderr, (
         f"{statement.text}\n{done.stderr}"
@@ -65,7 +68,7 @@ def serving(text: str, up: re.Pattern[str], folder: Path) -> Iterator[None]:
     log = folder / "serving.log"
     with log.open("w") as out:
         program = subprocess.Popen(
-            ["bash", "-c", f"exec {text}"], cwd=folder, env=environment(), stdout=out, stderr=out
+            ["bash", "-c", f"exec {text}"], cwd=folder, env=environment(folder), stdout=out, stderr=out
         )
     try:
         end = time.monotonic() + BOUND
@@ -87,5 +90,5 @@ def run_python(text: str, folder: Path) -> None:
         (folder / "my_effects.py").write_text(text)
     (folder / "program.py").write_text(text)
     command = [sys.executable, "program.py"]
-    done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(command, cwd=folder, env=environment(folder), capture_output=True, text=True)
     assert done.returncode == 0, f"{text}\n{done.stdout}{done.stderr}"

@@ -143,6 +143,14 @@ def launched(folder: Path) -> None:
     recorded(folder, {"run_1": "sine:3,0.5"})
 
 
+def launch_files(folder: Path) -> None:
+    """Machine files, gains and a rig file that launch files take."""
+    for name in ("plant.yaml", "guess.yaml"):
+        pn.save_model(pn.load_model("axis"), folder / name)
+    (folder / "my_cascade.yaml").write_text((ROOT / "config" / "control" / "cascade.yaml").read_text())
+    (folder / "rig.yaml").write_text("rig:\n  machine: guess.yaml\n  namespace: cylinder_1\n")
+
+
 def arm(folder: Path) -> None:
     """An arm that its cylinder lifts."""
     (folder / "arm.xml").write_text(ARM)
@@ -169,9 +177,9 @@ MADE: dict[str, tuple[Callable[[Path], None], ...]] = {
     "export.md": (axis_file,),
     "finding.md": (runs, loose_runs, effects_file),
     "fleet.md": (rigs,),
-    "identification.md": (constant_runs,),
+    "identification.md": (constant_runs, launch_files),
     "import.md": (tables,),
-    "nodes.md": (commissioned, my_file, launched),
+    "nodes.md": (commissioned, my_file, axis_file, launch_files, launched),
     "python.md": (named_runs, my_file),
     "recordings.md": (runs, my_file),
     "trust.md": (leaks,),

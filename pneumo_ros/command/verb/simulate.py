@@ -11,11 +11,14 @@ from pneumo_ros.command.again import again
 from pneumo_ros.command.arguments import add_model, add_output, add_recordings, chosen_machine, chosen_model
 from pneumo_ros.command.console import Console, columns
 from pneumo_ros.command.inputs import FORMS, parse_drive
+from pneumo_ros.command.noisy import EXAMPLE, parse_noise, with_noise
 from pneumo_ros.command.recordings import read_one
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
 
 if TYPE_CHECKING:
+    from numpy.random import Generator
+
     from pneumo_ros.command.playing import Plan
     from pneumo_ros.multiaxis import Machine
     from pneumo_ros.plant import Model
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 EXAMPLES = (
     "pneumo simulate --input step:2.5@1 --seconds 5 --out step_run",
     "pneumo simulate --input sine:3,0.5 --seconds 20 --model my.yaml --out sine_run",
+    "pneumo simulate --input sine:3,0.5 --noise position=5e-6,pressure_a=200,pressure_b=200 --seed 1 --out noisy_run",
     "pneumo simulate --input step_run --model better.yaml --out again   # the commands of a recording",
     "pneumo simulate --input shoulder=step:2.5@1 --input elbow=sine:3,0.5 --model two.yaml --out both",
 )  # parsed by a test
@@ -45,6 +49,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, metavar="S", help="how long (default: the input, else 10)")
     parser.add_argument("--rate", type=float, metavar="HZ", help="samples per second (default: 1000)")
     parser.add_argument("--position", type=float, metavar="M", help="where the piston starts (default: 0)")
+    parser.add_argument(
+        "--noise", metavar="SIGNAL=SIZE,...", action="append", default=[],
+        help=f"white noise of sensors, as standard deviations in m and Pa: {EXAMPLE}",
+    )  # fmt: skip
+    parser.add_argument("--seed", type=int, metavar="N", help="of the noise (default: 0)")
     add_recordings(parser, cut=False)
     add_model(parser)
     add_output(parser)
@@ -57,16 +66,17 @@ def run(options: argparse.Namespace, console: Console) -> int:
 
     check_new_folder(options.out)
     _check_numbers(options)
+    noise, random = _noise(options)
     if machine := chosen_machine(options):
-        return _run_axes(machine, options, console)
+        return _run_axes(machine, options, console, noise, random)
     model = chosen_model(options)
     options.input = _only(options.input, "--input", model)
     options.input_b = options.input_b and _only(options.input_b, "--input-b", model)
     plan = make_plan(options, model, console)
     with console.progress("Simulating") as progress:
         states = played(model, plan, progress)
-    signals = recorded(model, plan, states)
-    description = {"schema_version": 1, "version": __version__, "model": model.as_dict(), "seed": None}
+    signals = with_noise(recorded(model, plan, states), noise, random, force_driven=model.force_driven)
+    description = {"schema_version": 1, "version": __version__, "model": model.as_dict(), "seed": options.seed}
     console.note(f"Writing {len(states)} samples to {options.out}")
     write_recording(options.out, **signals, **plan.commands, description=description)
     console.say(f"Simulated {model.name} for {plan.samples * plan.sample_time:g} s: {plan.text}")
@@ -86,7 +96,9 @@ def run(options: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-def _run_axes(machine: "Machine", options: argparse.Namespace, console: Console) -> int:
+def _run_axes(
+    machine: "Machine", options: argparse.Namespace, console: Console, noise: dict[str, float], random: "Generator"
+) -> int:
     """The same for a machine of several axes: one recording, each axis under its prefix."""
     from pneumo_ros.command.axes_playing import axes_plans, played_together, write_together
 
@@ -95,7 +107,7 @@ def _run_axes(machine: "Machine", options: argparse.Namespace, console: Console)
     with console.progress("Simulating") as progress:
         states = played_together(machine, plans, progress)
     console.note(f"Writing {len(states)} samples to {options.out}")
-    signals = write_together(options.out, machine, plans, states)
+    signals = write_together(options.out, machine, plans, states, noise, random, options.seed)
     console.say(f"Simulated {machine.name} for {first.samples * first.sample_time:g} s")
     for axis, one in signals.items():
         console.say(f"\n{axis}/: {plans[axis].text}\n{columns(extremes(one), right=(1, 2, 3, 4))}")
@@ -123,6 +135,20 @@ def _check_numbers(options: argparse.Namespace) -> None:
     for name, value in (("--seconds", options.seconds), ("--rate", options.rate)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise UsageError(f"{name} is {value:g}; it takes a number above 0")
+
+
+def _noise(options: argparse.Namespace) -> tuple[dict[str, float], "Generator"]:
+    """--noise, and the generator of --seed, which is then a number; UsageError for a seed without noise."""
+    import numpy as np
+
+    noise = parse_noise(options.noise)
+    if options.seed is not None and not noise:
+        raise UsageError(f"--seed {options.seed} goes with --noise, such as --noise {EXAMPLE}")
+    if options.seed is not None and options.seed < 0:
+        raise UsageError(f"--seed is {options.seed}; it takes a whole number of at least 0")
+    if noise and options.seed is None:
+        options.seed = 0
+    return noise, np.random.default_rng(options.seed)
 
 
 def _only(given: list[str], option: str, model: "Model") -> str:
