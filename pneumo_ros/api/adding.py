@@ -16,6 +16,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
 from pneumo_ros.runs.inputs import measuring
+from pneumo_ros.units import LINE, writing
 from pneumo_ros.wording.errors import steps
 
 
@@ -47,13 +48,15 @@ class AddingResult(Result):
         ]
 
     def __str__(self) -> str:
-        return text(self.as_dict())
+        with writing(self.data):
+            return text(self.as_dict())
 
     def _repr_html_(self) -> str:
-        data = self.as_dict()
-        course = notebook.waterfall(steps([(one["model"], one["error"]) for one in data["course"]]))
-        table = notebook.rows_table(self.rows(), "What was added")
-        return notebook.page(headline(data), self.errors[2] <= self.errors[1], table, course)
+        with writing(self.data):
+            data = self.as_dict()
+            course = notebook.waterfall(steps([(one["model"], one["error"]) for one in data["course"]]))
+            table = notebook.rows_table(self.rows(), "What was added")
+            return notebook.page(headline(data), self.errors[2] <= self.errors[1], table, course)
 
     def _page(self, origin: dict[str, Any]) -> Report:
         from pneumo_ros.report.adding import adding_report
@@ -63,6 +66,7 @@ class AddingResult(Result):
         return adding_report(self.detail, data | {"headline": headline(data)}, compared, origin)
 
 
+@writing(LINE)
 def add(
     effects: str | Sequence[str],
     recordings: Given,

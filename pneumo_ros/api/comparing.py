@@ -17,6 +17,7 @@ from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
 from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.shooting.refit import SEGMENT, refit
+from pneumo_ros.units import LINE, writing
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,15 @@ class ComparisonResult(Result):
         return found
 
     def __str__(self) -> str:
-        return "\n\n".join((comparison_text(self.detail), equations_text(self.detail), findings_text(self.as_dict())))
+        with writing(self.data):
+            return "\n\n".join(
+                (comparison_text(self.detail), equations_text(self.detail), findings_text(self.as_dict()))
+            )
 
     def _repr_html_(self) -> str:
-        table = notebook.rows_table(self.rows(), f"Errors over {self.detail.horizon:g} s, in SI units")
-        return notebook.page(verdict(self.as_dict()), self.explained, table)
+        with writing(self.data):
+            table = notebook.rows_table(self.rows(), f"Errors over {self.detail.horizon:g} s, in SI units")
+            return notebook.page(verdict(self.as_dict()), self.explained, table)
 
     def _page(self, origin: dict[str, Any]) -> Report:
         from pneumo_ros.report.comparison import comparison_report
@@ -60,6 +65,7 @@ class ComparisonResult(Result):
         return comparison_report(self.as_dict(), self.detail, self.model, origin)
 
 
+@writing(LINE)
 def compare(
     recordings: Given,
     model: Machine = "axis",

@@ -24,6 +24,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
 from pneumo_ros.runs.inputs import measuring
+from pneumo_ros.units import LINE, writing
 from pneumo_ros.wording.additions import additions_table
 from pneumo_ros.wording.diagnosis import DiagnosisWords
 from pneumo_ros.wording.diagnosis import diagnosis as words
@@ -57,7 +58,8 @@ class DiagnosisResult(Result):
     @property
     def words(self) -> DiagnosisWords:
         """The diagnosis in sentences and tables."""
-        return words(self.as_dict())
+        with writing(self.data):
+            return words(self.as_dict())
 
     @property
     def headline(self) -> str:
@@ -76,14 +78,16 @@ class DiagnosisResult(Result):
         ]  # fmt: skip
 
     def __str__(self) -> str:
-        return text(self.as_dict())
+        with writing(self.data):
+            return text(self.as_dict())
 
     def _repr_html_(self) -> str:
-        said = self.words
-        rivals = [notebook.paragraph(one.rivals) for one in said.added]
-        tables = (notebook.table(additions_table(said.added)), *rivals, notebook.waterfall(said.steps))
-        sentences = [notebook.paragraph(one) for one in (*said.notes, *said.remains, said.experiment)]
-        return notebook.page(said.headline, self.verdict != UNKNOWN, *tables, *sentences)
+        with writing(self.data):
+            said = self.words
+            rivals = [notebook.paragraph(one.rivals) for one in said.added]
+            tables = (notebook.table(additions_table(said.added)), *rivals, notebook.waterfall(said.steps))
+            sentences = [notebook.paragraph(one) for one in (*said.notes, *said.remains, said.experiment)]
+            return notebook.page(said.headline, self.verdict != UNKNOWN, *tables, *sentences)
 
     def _page(self, origin: dict[str, Any]) -> Report:
         from pneumo_ros.report.diagnosis import diagnosis_report
@@ -94,6 +98,7 @@ class DiagnosisResult(Result):
         return "waterfall"
 
 
+@writing(LINE)
 def diagnose(
     recordings: Given,
     holdout: Given,

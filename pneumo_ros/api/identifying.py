@@ -14,6 +14,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import whole
 from pneumo_ros.report.chart import Report
 from pneumo_ros.runs.inputs import check_driven, measuring
+from pneumo_ros.units import LINE, writing
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,13 @@ class IdentificationResult(Result):
         return [{"parameter": name, **{key: one[key] for key in keys}} for name, one in found.items()]
 
     def __str__(self) -> str:
-        return text(self.as_dict(), verbose=False)
+        with writing(self.data):
+            return text(self.as_dict(), verbose=False)
 
     def _repr_html_(self) -> str:
-        table = notebook.rows_table(self.rows(), "Identified parameters, with 95 % intervals")
-        return notebook.page(headline(self.as_dict()), not self.undetermined, table)
+        with writing(self.data):
+            table = notebook.rows_table(self.rows(), "Identified parameters, with 95 % intervals")
+            return notebook.page(headline(self.as_dict()), not self.undetermined, table)
 
     def _page(self, origin: dict[str, Any]) -> Report:
         from pneumo_ros.report.identification import identification_report
@@ -50,6 +53,7 @@ class IdentificationResult(Result):
         return identification_report(self.as_dict(), self.model, origin)
 
 
+@writing(LINE)
 def identify(recordings: Given, model: Machine = "axis", *, progress: Progress | None = None) -> IdentificationResult:
     """Identify friction and flow coefficients from constant-voltage `recordings`, with 95 % intervals.
 

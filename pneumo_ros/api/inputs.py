@@ -10,6 +10,7 @@ from pneumo_ros.reading.read import ReadOptions, corrected_recording, run_of
 from pneumo_ros.records import Recording
 from pneumo_ros.records.folders import recordings_in
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import write_in
 
 Machine = str | Path | Model
 One = str | Path | Recording
@@ -28,8 +29,13 @@ class Runs:
 
 
 def machine(given: Machine) -> Model:
-    """The model itself, or that of a machine file or of the name of a shipped one; errors as `load_model`."""
-    return given if isinstance(given, Model) else load_model(given)
+    """The model itself, or that of a machine file or of the name of a shipped one; errors as `load_model`.
+
+    Texts of the verb that asks for it are written in its units.
+    """
+    model = given if isinstance(given, Model) else load_model(given)
+    write_in(model.coordinate)
+    return model
 
 
 def recordings(given: Given, without: Collection[Path] = ()) -> tuple[Recording, ...]:

@@ -13,6 +13,7 @@ from pneumo_ros.files import write_whole
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.report.chart import Chart, HeatMap, Report
 from pneumo_ros.report.provenance import provenance
+from pneumo_ros.units import writing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,7 +52,8 @@ class Result:
     @cached_property
     def charts(self) -> dict[str, Chart | HeatMap]:
         """Every chart of the page, by name."""
-        return {chart.name: chart for chart in self._page(_origin(())).charts()}
+        with writing(self.data):
+            return {chart.name: chart for chart in self._page(_origin(())).charts()}
 
     @overload
     def plot(self, name: str | None = None, library: Literal["matplotlib"] = "matplotlib") -> "Figure": ...
@@ -79,7 +81,8 @@ class Result:
         from pneumo_ros.report.page import page_html
 
         require_libraries(("plotly",))
-        write_whole(path, page_html(self._page(_origin(self.paths))))
+        with writing(self.data):
+            write_whole(path, page_html(self._page(_origin(self.paths))))
 
     def _page(self, origin: dict[str, Any]) -> Report:
         raise NotImplementedError

@@ -16,8 +16,10 @@ from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
 from pneumo_ros.reading.read import Reading, run_of
 from pneumo_ros.records import Recording, contract
+from pneumo_ros.units import LINE, writing
 
 
+@writing(LINE)
 def simulate(
     model: Machine = "axis",
     drive: str | ArrayLike | Recording = "step:2.5@1",

@@ -19,6 +19,7 @@ def adding_dict(found: "Adding") -> dict[str, Any]:
     return {
         "schema_version": 1,
         "model": found.model.name,
+        "coordinate": found.model.coordinate,
         "added": [
             {"effect": name, "parameters": _parameters(name, found), "error_before": before, "error_after": after}
             for name in found.effects

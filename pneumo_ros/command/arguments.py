@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.units import write_in
 
 if TYPE_CHECKING:
     from pneumo_ros.multiaxis import Machine
@@ -58,9 +59,9 @@ def add_wiring(parser: argparse.ArgumentParser) -> None:
         metavar="WORD,WORD",
         default="",
         help="read recordings that are not in SI units and absolute pressures, or wired otherwise: bar, kPa, hPa, MPa, "
-        "psi; gauge, gauge-supply; mm, cm, in; kN, lbf; swapped-chambers, reversed-position, reversed-voltage, "
-        "reversed-force; zero=125mm: position at mid stroke; closed=5V: the command that closes the valve; without a "
-        "signal: no-pressure-a, no-pressure-b, no-supply, no-effort, no-load-cell, no-command",
+        "psi; gauge, gauge-supply; mm, cm, in, or deg, mrad, rev; kN, lbf; swapped-chambers, reversed-position, "
+        "reversed-voltage, reversed-force; zero=125mm: position at mid stroke; closed=5V: the command that closes the "
+        "valve; without a signal: no-pressure-a, no-pressure-b, no-supply, no-effort, no-load-cell, no-command",
     )
     parser.add_argument(
         "--rig",
@@ -143,7 +144,9 @@ def chosen_machine(options: argparse.Namespace) -> "Machine | None":
 
 
 def chosen_model(options: argparse.Namespace) -> "Model":
-    """The model that --model and --effects ask for."""
+    """The model that --model and --effects ask for; texts are written in its units from here on."""
     from pneumo_ros.plant import load_model
 
-    return load_model(options.model, effects_files=tuple(options.effects))
+    model = load_model(options.model, effects_files=tuple(options.effects))
+    write_in(model.coordinate)
+    return model

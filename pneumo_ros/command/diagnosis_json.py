@@ -32,6 +32,7 @@ def diagnosis_dict(outcome: "Outcome", estimates: "Mapping[str, Estimate]", expe
     return {
         "schema_version": SCHEMA_VERSION,
         "model": outcome.model.name,
+        "coordinate": outcome.model.coordinate,
         "verdict": outcome.verdict,
         "interrupted": outcome.interrupted,
         "deadline": outcome.deadline,

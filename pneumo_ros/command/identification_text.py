@@ -5,6 +5,7 @@ from typing import Any
 
 from pneumo_ros.command.console import columns
 from pneumo_ros.compare.wording import number
+from pneumo_ros.units import shown
 from pneumo_ros.wording.identification import estimate_words, sentences
 
 _SHOWN_STRETCHES = 4  # of a run; the others are counted
@@ -37,7 +38,8 @@ def headline(result: dict[str, Any]) -> str:
         f"{used} of {windows} windows of {span:g} s in {count(len(runs), 'run')} are steady; "
         f"{count(len(result['breakaways']), 'breakaway')}.\n"
         f"Velocities are slopes of the position over {span:g} s; sensor noise gives them "
-        f"an error of {number(1e6 * speed, 2)} um/s, and the forces one of {number(force, 2)} N (medians)."
+        f"an error of {number(1e6 * speed, 2)} {shown('um/s')}, and the forces one of "
+        f"{number(force, 2)} {shown('N')} (medians)."
     )
 
 
@@ -78,10 +80,10 @@ def _difference(found: dict[str, Any]) -> str:
 
 def stretches(result: dict[str, Any]) -> str:
     """A line for each run: steady stretches, and reasons of refusal."""
-    rows = [("run", "steady", "from - to [s]", "speed [mm/s]", "refused windows")]
+    rows = [("run", "steady", "from - to [s]", f"speed [{shown('mm/s')}]", "refused windows")]
     for run in result["runs"]:
         parts = run["stretches"]
-        shown = [f"{p['start_s']:.2f} - {p['stop_s']:.2f}" for p in parts[:_SHOWN_STRETCHES]]
+        spans = [f"{p['start_s']:.2f} - {p['stop_s']:.2f}" for p in parts[:_SHOWN_STRETCHES]]
         more = [f"{len(parts) - _SHOWN_STRETCHES} more"] if len(parts) > _SHOWN_STRETCHES else []
         speeds = [1e3 * p["velocity"] for p in parts]
         span = (
@@ -92,7 +94,7 @@ def stretches(result: dict[str, Any]) -> str:
         why = ", ".join(f"{number} {reason}" for reason, number in run["refused"].items()) or "-"
         if not run["windows"]:
             why = "no constant input for as long as a window"
-        rows.append((run["name"], f"{run['used']} of {run['windows']}", ", ".join(shown + more) or "-", span, why))
+        rows.append((run["name"], f"{run['used']} of {run['windows']}", ", ".join(spans + more) or "-", span, why))
     return columns(rows)
 
 

@@ -15,6 +15,7 @@ from pneumo_ros.command.rig_file import apply_rig
 from pneumo_ros.environment import LIBRARIES, library_advice
 from pneumo_ros.errors import DataError, PneumoError, UsageError
 from pneumo_ros.nearest import unknown_name
+from pneumo_ros.units import LINE, writing
 
 VERBS = (
     "demo",
@@ -78,7 +79,8 @@ def _run(arguments: list[str]) -> int:
     console = Console(getattr(options, "quiet", False), getattr(options, "json", None))
     if replaced:
         console.note(replaced)
-    code: int = run_verb(arguments[0], verb, options, console)
+    with writing(LINE):  # until a machine is chosen
+        code: int = run_verb(arguments[0], verb, options, console)
     sys.stdout.flush()
     return code
 

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING
 
 from pneumo_ros.compare.wording import EQUATIONS, VARIABLES
 from pneumo_ros.errors import PneumoError
+from pneumo_ros.units import LINE
 
 if TYPE_CHECKING:
     from pneumo_ros.diagnose.outcome import Addition, Outcome, Unexplained
+    from pneumo_ros.plant import Model
 
 # variable that a residual follows -> experiment that takes it through its range while the others stay
 SHOWING = {
@@ -29,11 +31,11 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     """Effects that these recordings neither show nor exclude, why not, and the experiment that shows them.
 
     They would not show the usual size, or they speak for the effect, but not enough. Not those that breakaways showed
-    after the equations did not. None for an axis without valve, for which there are no experiments.
+    after the equations did not. None for an axis without valve or one that turns, for which there are no experiments.
     """
     from pneumo_ros.diagnose.score import MARGIN
 
-    if not outcome.steps or outcome.model.force_driven:
+    if not outcome.steps or _without_experiments(outcome.model):
         return []
     library, last, found = outcome.model.library, outcome.steps[-1], list[dict[str, str]]()
     asked = f"and {MARGIN:g} are asked"
@@ -49,12 +51,16 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     return found
 
 
+def _without_experiments(model: "Model") -> bool:
+    return model.force_driven or model.coordinate != LINE
+
+
 def suggested(outcome: "Outcome", machine: str, progress: Callable[[float], None] = lambda share: None) -> str:
     """A sentence, "" where there is nothing to distinguish or no time left; `machine` is what --model takes.
 
     `progress` is called with the share done.
     """
-    if outcome.interrupted or outcome.deadline or outcome.model.force_driven:
+    if outcome.interrupted or outcome.deadline or _without_experiments(outcome.model):
         return ""
     for added in outcome.added:
         if added.indistinguishable_from:

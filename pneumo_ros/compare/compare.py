@@ -19,6 +19,7 @@ from pneumo_ros.equations.weak import Residual, equation_residuals
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.windows import HORIZON, fitting_horizon, free_run, predict
+from pneumo_ros.units import LINE
 
 __all__ = ["Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run", "judge_equations"]
 
@@ -66,6 +67,7 @@ class Comparison:
     regimes: dict[str, dict[str, Share]]
     dependences: dict[str, dict[str, Dependence]]
     friction: dict[str, FrictionPoints]
+    coordinate: str = LINE  # of the machine: in whose units the numbers are
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON of `pneumo compare`; errors of a simulation that diverged are not finite."""
@@ -105,6 +107,7 @@ def compare(
             for name in (results[0].residuals if results else {})
         },
         friction=friction_map(model, motions) if results and not model.imposed else {},
+        coordinate=model.coordinate,
     )
 
 

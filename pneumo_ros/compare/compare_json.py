@@ -3,8 +3,10 @@
 import math
 from typing import TYPE_CHECKING, Any
 
+from pneumo_ros.compare.dependence import UNITS
 from pneumo_ros.compare.regimes import MEANING
 from pneumo_ros.compare.shares import Share
+from pneumo_ros.units import unit_along
 
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison, RunComparison
@@ -19,14 +21,15 @@ def comparison_dict(comparison: "Comparison") -> dict[str, Any]:
     return {
         "schema_version": SCHEMA_VERSION,
         "model": comparison.model,
+        "coordinate": comparison.coordinate,
         "horizon_s": comparison.horizon,
         "runs": [_run(run, total) for run in comparison.runs],
         "equations": {name: _equation(comparison, name) for name in comparison.equations},
         "signals": {name: _signal(comparison, name) for name in comparison.regimes if name not in comparison.equations},
         "regimes": {name: meaning for name, meaning in MEANING.items() if name in occurring},
         "friction_map": {
-            "velocity_unit": "m/s",
-            "force_unit": "N",
+            "velocity_unit": unit_along("m/s", comparison.coordinate),
+            "force_unit": unit_along("N", comparison.coordinate),
             "directions": {name: points.as_dict() for name, points in comparison.friction.items()},
         },
     }
@@ -66,7 +69,10 @@ def _equation(comparison: "Comparison", name: str) -> dict[str, Any]:
     return {
         **vars(comparison.equations[name]),
         "regimes": _shares(comparison.regimes[name]),
-        "against": {key: found.as_dict() for key, found in comparison.dependences[name].items()},
+        "against": {
+            key: found.as_dict() | {"unit": unit_along(UNITS[key], comparison.coordinate)}
+            for key, found in comparison.dependences[name].items()
+        },
     }
 
 

@@ -34,9 +34,8 @@ class Dependence:
     explained_share: float  # explained by this variable beyond the constant, predicted for windows left out
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON: columns over the bins."""
+        """For JSON: columns over the bins, in SI units."""
         return {
-            "unit": UNITS[self.variable],
             "constant_share": self.constant_share,
             "explained_share": self.explained_share,
             "from": self.bins.low, "to": self.bins.high, "at": self.bins.centre, "mean": self.bins.mean,

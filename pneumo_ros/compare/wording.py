@@ -1,21 +1,43 @@
 """Names of signals, equations, regimes and variables in texts, and numbers as text. Plain Python only."""
 
 import math
+from collections.abc import Iterator, Mapping
 
-# name in reports -> words, unit shown, factor from SI
-SIGNALS = {
+from pneumo_ros.units import shown
+
+Row = tuple[str, str, float]
+
+
+class Named(Mapping[str, Row]):
+    """Name in reports -> words, unit shown, factor from SI, in the units of the machine that texts are about."""
+
+    def __init__(self, rows: Mapping[str, Row]) -> None:
+        self._rows = dict(rows)
+
+    def __getitem__(self, name: str) -> Row:
+        words, unit, factor = self._rows[name]
+        return words, shown(unit), factor
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+
+_SIGNALS = {
     "position_m": ("position", "mm", 1e3),
     "pressure_a_pa": ("pressure a", "kPa", 1e-3),
     "pressure_b_pa": ("pressure b", "kPa", 1e-3),
     "force_n": ("force", "N", 1.0),
     "flow_a_kg_s": ("flow a", "mg/s", 1e6),
 }
-EQUATIONS = {
+_EQUATIONS = {
     "momentum": ("momentum", "N", 1.0),
     "chamber_a": ("chamber a", "mg/s", 1e6),
     "chamber_b": ("chamber b", "mg/s", 1e6),
 }
-TARGETS = SIGNALS | EQUATIONS
+SIGNALS, EQUATIONS, TARGETS = Named(_SIGNALS), Named(_EQUATIONS), Named(_SIGNALS | _EQUATIONS)
 REGIMES = {
     "stick": "stick",
     "breakaway": "breakaway",
@@ -28,7 +50,7 @@ REGIMES = {
     "exhausting_b": "exhausting b",
     "valve_near_null": "valve near null",
 }
-VARIABLES = {
+VARIABLES = Named({
     "velocity": ("velocity", "m/s", 1.0),
     "position": ("position", "m", 1.0),
     "voltage": ("voltage", "V", 1.0),
@@ -37,7 +59,7 @@ VARIABLES = {
     "pressure_b": ("pressure b", "bar", 1e-5),
     "pressure_difference": ("pressure a - b", "bar", 1e-5),
     "time": ("time", "s", 1.0),
-}
+})  # fmt: skip
 
 
 def number(value: float | None, digits: int = 3) -> str:

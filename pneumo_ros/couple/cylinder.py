@@ -44,6 +44,7 @@ class Cylinder:
                 f"{model.name} cannot be coupled: it takes a machine file with a section 'chambers', whose effects "
                 "read no measured signals, and one valve command"
             )
+        model.require_metres("coupling")
         model.require_two_chambers("coupling")
         kept = [name for name in model.effects if name not in OF_THE_ARM]
         self.model = model.with_effects([*kept, "constant_load"], {LOAD: 0.0})

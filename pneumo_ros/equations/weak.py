@@ -85,7 +85,7 @@ def _momentum(model: Model, run: Run, states: Array, claimed: Array) -> Residual
     added = model.outputs(states, run.sampled(model.inputs))["added_mass"]
     mass = model["piston.mass"] + added[bump.centres(len(run))]
     value = equation.value(bump, mass, states[:, 0], claimed[:, 1])
-    return _residual("momentum", "N", run, bump, value, equation.noise(bump), equation.usable(bump))
+    return _residual("momentum", model.unit("N"), run, bump, value, equation.noise(bump), equation.usable(bump))
 
 
 def _chamber(model: Model, run: Run, states: Array, claimed: Array, chamber: Chamber) -> Residual:

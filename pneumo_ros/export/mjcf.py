@@ -17,10 +17,11 @@ NO_SLIDE = ("arm_load", "imposed_motion", "measured_load", "load_compliance")  #
 def mjcf_text(model: Model, machine: str) -> str:
     """The MJCF of a model whose machine file is `machine`, which a comment names.
 
-    Raises UsageError for a machine without chambers, and for loads that a slide joint does not have.
+    Raises UsageError for a machine without chambers or one that turns, and for loads that a slide joint does not have.
     """
     if model.force_driven:
         raise UsageError(f"{model.name} has no chambers; mjcf takes a machine file with a section 'chambers'")
+    model.require_metres("mjcf")
     other = [name for name in model.effects if name in NO_SLIDE]
     if other:
         raise UsageError(

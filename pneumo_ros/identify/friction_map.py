@@ -13,6 +13,7 @@ from pneumo_ros.identify.confidence import central_jacobian, half_widths
 from pneumo_ros.identify.static_map import MapFit, MapPoint, sliding_friction
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.physical import physical
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 
@@ -57,13 +58,13 @@ def _unseen(
     few = int(np.sum(speeds < slow))
     unknown: dict[str, str] = {}
     if few < 3:
-        slowest = f"the slowest is at {1e3 * speeds.min():.0f} mm/s" if len(speeds) else "there is none"
-        text = f"needs steady points below {1e3 * slow:.0f} mm/s, or several breakaways; {slowest}"
+        slowest = f"the slowest is at {1e3 * speeds.min():.0f} {shown('mm/s')}" if len(speeds) else "there is none"
+        text = f"needs steady points below {1e3 * slow:.0f} {shown('mm/s')}, or several breakaways; {slowest}"
         unknown |= {name: text for name in free if name in _STRIBECK}
         if not breakaways:
             unknown["lugre_friction.static_friction"] = f"{text}, and no breakaway from rest was recorded"
     if len(speeds) and speeds.max() < SPAN * speeds.min():
-        span = f"{1e3 * speeds.min():.0f} to {1e3 * speeds.max():.0f} mm/s"
+        span = f"{1e3 * speeds.min():.0f} to {1e3 * speeds.max():.0f} {shown('mm/s')}"
         text = f"needs speeds over a factor of {SPAN:g}; the speeds here span {span}"
         unknown |= {name: text for name in free if name.endswith((".coefficient", ".difference"))}
     return {name: text for name, text in unknown.items() if name in free}

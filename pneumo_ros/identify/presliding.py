@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pneumo_ros.equations.breakaway import Breakaway, holding_force
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,9 @@ def fit_presliding(model: Model, runs: Sequence[Run], breakaways: Sequence[Break
     bound = passive_damping(model)
     values[DAMPING] = min(model[DAMPING], bound)
     kept = "kept as it was" if values[DAMPING] == model[DAMPING] else "lowered to the passive limit"
-    remarks[DAMPING] = f"not measured, {kept}; passive up to {bound:.0f} N s/m (Eq. 16 corrected for quadratic drag)"
+    remarks[DAMPING] = (
+        f"not measured, {kept}; passive up to {bound:.0f} {shown('N s/m')} (Eq. 16 corrected for quadratic drag)"
+    )
     return Presliding(values, intervals, remarks)
 
 

@@ -13,6 +13,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import SIDES
 from pneumo_ros.runs.noise import noise_level
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 
@@ -151,7 +152,7 @@ def _reasons(
     tests: tuple[tuple[str, Any, Callable[[int], str]], ...] = (
         ("a gap in the recording", ~run.measured[rows].all(axis=1), lambda i: ""),
         ("at the end of the stroke", np.abs(run.position[rows]).max(axis=1) > edge, lambda i: ""),
-        ("the piston rests or creeps", speed * span < TRAVEL, lambda i: f" ({1e3 * speed[i]:.2f} mm/s)"),
+        ("the piston rests or creeps", speed * span < TRAVEL, lambda i: f" ({1e3 * speed[i]:.2f} {shown('mm/s')})"),
         (
             "the velocity changes",
             np.abs(speed_change) > SPEED_CHANGE * speed,
@@ -160,7 +161,7 @@ def _reasons(
         (
             "the pressures still change the force",
             np.abs(force_change) > FORCE_CHANGE * np.abs(force),
-            lambda i: f" by {abs(force_change[i]):.1f} N in {span:.2g} s",
+            lambda i: f" by {abs(force_change[i]):.1f} {shown('N')} in {span:.2g} s",
         ),
     )
     found = (((why, why + words(i)) for why, bad, words in tests if bad[i]) for i in range(len(rows)))

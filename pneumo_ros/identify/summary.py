@@ -24,6 +24,7 @@ def summary(found: Identification, runs: Sequence[Run]) -> dict[str, Any]:
     return {
         "schema_version": 1,
         "model": found.model.name,
+        "coordinate": found.model.coordinate,
         "effects": list(found.model.effects),
         "parameters": {name: _parameter(found, name) for name in found.parameters},
         "undetermined": found.undetermined,

@@ -12,6 +12,7 @@ from typing import Any
 from pneumo_ros.errors import UsageError, brief
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.library import ACTUATORS, FRAME
+from pneumo_ros.units import KEY
 
 AXES = "axes"
 SUPPLY = "supply_pressure_droop"  # beside the axes: what they share
@@ -52,7 +53,7 @@ def _with_shared(own: Mapping[str, Any], shared: Mapping[str, Any]) -> dict[str,
     effects = own.get("effects", shared.get("effects"))
     listed = [name for name in effects if isinstance(name, str)] if isinstance(effects, list) else []
     actuated = any(name in own for name in ACTUATORS)
-    used = {"effects", *FRAME, *listed} - set(ACTUATORS if actuated else ())
+    used = {"effects", KEY, *FRAME, *listed} - set(ACTUATORS if actuated else ())
     return {**{key: value for key, value in shared.items() if key in used}, **own}
 
 

@@ -13,14 +13,12 @@ from pneumo_ros.plant.library import is_part
 from pneumo_ros.plant.reach import default_of, names_in
 from pneumo_ros.plant.signals import SIGNALS
 
-_VELOCITY = "m/s"  # states that take their step with the piston: never commanded
-
 
 def commanded_states(effects: Sequence[type[Effect]], measured: Collection[str] = ()) -> tuple[str, ...]:
     """The states, in order, that depend on inputs, parameters and each other alone; `measured` as in `inputs_of`."""
     owners = {state: effect for effect in effects for state in effect.states}
     needs = _needs(effects, measured)
-    known = {s for s, effect in owners.items() if not is_part(effect) and effect.states[s].unit != _VELOCITY}
+    known = {s for s, effect in owners.items() if not is_part(effect) and not effect.states[s].is_velocity}
     for _ in owners:  # each round but the last takes at least one away
         kept = {s for s in known if not (_closure(needs, s) & owners.keys()) - known}
         if kept == known:

@@ -98,6 +98,12 @@ class State:
     unit: str
     meaning: str
     initial: float | str = 0.0
+    line_unit: str = ""  # where the machine turns, the unit in one that moves along a line
+
+    @property
+    def is_velocity(self) -> bool:
+        """Whether it takes its step with the velocities."""
+        return (self.line_unit or self.unit) == "m/s"
 
 
 @dataclass(frozen=True)
@@ -128,6 +134,7 @@ class Effect:
     transmission: ClassVar[bool] = False  # a candidate only for machines that a measured force drives
     part: ClassVar[bool] = False  # how a machine is built: its machine file says so, and no recording is asked for it
     entered: ClassVar[str] = ""  # what to write into a machine file, for an effect that recordings cannot show
+    coordinate: ClassVar[str] = ""  # of a part that is made for one: "rotation" for one that turns
     contains: ClassVar[tuple[str, ...]] = ()  # simpler effects that it equals at some of its values
 
     def __init_subclass__(cls) -> None:

@@ -91,4 +91,4 @@ def _all(library: Library) -> Iterator[type[Effect]]:
 
 
 def _find(library: Library, name: str) -> type[Effect]:
-    return library.frame(name) if name in FRAME else library.find(name)
+    return library.part(name) if name in FRAME else library.find(name)

@@ -4,6 +4,7 @@ Nothing is registered. An effect `seal_leak` of the catalogue is the class `Seal
 other packages offer theirs under the entry point group `pneumo_ros.effects`.
 """
 
+import copy
 import importlib
 import sys
 from collections.abc import Iterable, Mapping
@@ -15,7 +16,9 @@ from types import ModuleType
 from pneumo_ros.errors import UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.actuator import Actuator
+from pneumo_ros.plant.coordinate import Scale, turned
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.units import LINE, TURN
 
 _ROOMS = ("valve", "line", "chamber", "motor", "piston", "friction", "sensor")
 
@@ -94,6 +97,7 @@ class Library:
     def __init__(self, effect_files: Iterable[str | Path | type[Effect]] = ()) -> None:
         """Load `effect_files`: paths, or classes. UsageError as `effects_of_file`, or when one redefines an effect."""
         self._own: dict[str, type[Effect]] = {}
+        self._scale: Scale | None = None
         for given in effect_files:
             where = f"class {given.__name__}" if isinstance(given, type) else f"effects file {given}"
             found = {given.name: given} if isinstance(given, type) else effects_of_file(str(given))
@@ -101,6 +105,20 @@ class Library:
                 if name in _catalogue_modules() or name in FRAME or name in self._own:
                     raise UsageError(f"{where} defines {name}, which is already taken; rename the class")
                 self._own[name] = effect
+
+    @property
+    def coordinate(self) -> str:
+        """Along which coordinate the effects act that it gives."""
+        return TURN if self._scale else LINE
+
+    def turning(self, scale: Scale) -> "Library":
+        """The same effects for a machine of this scale that turns: in rad, N m and kg m2."""
+        other = copy.copy(self)
+        other._scale = scale
+        return other
+
+    def _along(self, effect: type[Effect]) -> type[Effect]:
+        return turned(effect, self._scale) if self._scale else effect
 
     def names(self) -> tuple[str, ...]:
         """All effect names, sorted."""
@@ -119,16 +137,16 @@ class Library:
                 "'effects'"
             )
         if name in self._own:
-            return self._own[name]
+            return self._along(self._own[name])
         if name in _catalogue_modules():
-            return effects_in(importlib.import_module(_catalogue_modules()[name]))[name]
+            return self._along(effects_in(importlib.import_module(_catalogue_modules()[name]))[name])
         if name in _installed():
-            return _installed()[name]
+            return self._along(_installed()[name])
         raise UsageError(f"{unknown_name('effect', name, self.names())} (effects of your own: --effects FILE.py)")
 
     def part(self, name: str) -> type[Effect]:
         """Piston, air, or an actuator by its name."""
-        return self._own[name] if name in self._own else self.frame(name)
+        return self._along(self._own[name] if name in self._own else self.frame(name))
 
     def actuator(self, name: str) -> type[Actuator]:
         """An actuator by its name."""

@@ -13,6 +13,7 @@ from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME, Library
 from pneumo_ros.plant.model import Model
 from pneumo_ros.plant.uncertainty import SECTION, flat, nested
+from pneumo_ros.units import KEY, LINE
 from pneumo_ros.yaml_text import load_yaml
 
 
@@ -45,8 +46,9 @@ def read_machine(name_or_path: str | Path) -> tuple[str, str]:
 def load_model(name_or_path: str | Path = "axis", effects_files: Iterable[str | Path | type[Effect]] = ()) -> Model:
     """Load a machine file, completely or not at all.
 
-    `name_or_path`: a path, or the name of a shipped one, `axis`, `paper` or `emps`; of a file with several axes, one is
-    meant by two.yaml:shoulder. `effects_files`: effects of your own, as paths of Python files or as classes.
+    `name_or_path`: a path, or the name of a shipped one, `axis`, `paper`, `emps` or `vane`; of a file with several
+    axes, one is meant by two.yaml:shoulder. `effects_files`: effects of your own, as paths of Python files or as
+    classes.
 
     Raises DataError when the file cannot be read, and UsageError, with the nearest names, for an unknown or missing
     section, effect or parameter, or a value that is no finite number within its range.
@@ -106,7 +108,7 @@ def _holds(content: object, key: str) -> bool:
 def _of_the_machine(given: Mapping[str, Any]) -> dict[str, Any]:
     """A node's parameters without those that are its own: rates, names, seeds, effects that were switched off."""
     listed = given["effects"] if isinstance(given["effects"], list) else []
-    kept = {"effects", SECTION, *FRAME, *(name for name in listed if isinstance(name, str))}
+    kept = {"effects", KEY, SECTION, *FRAME, *(name for name in listed if isinstance(name, str))}
     machine = {name: value for name, value in given.items() if name in kept}
     if "mass_0" in (arm := machine.get("arm_load", {})):  # the coefficients are those of its URDF already
         machine["arm_load"] = {key: value for key, value in arm.items() if key.startswith(("mass_", "energy_"))}
@@ -122,7 +124,7 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library, folde
     if not isinstance(listed, list) or not all(isinstance(item, str) for item in listed):
         raise UsageError(f"'effects' is {brief(listed)}; it takes a list of names, such as [dead_zone, arctan_flow]")
     listed = [name for name in listed if name]
-    sections = {key: value for key, value in given.items() if key not in ("effects", SECTION)}
+    sections = {key: value for key, value in given.items() if key not in ("effects", KEY, SECTION)}
     frame = _frame(sections, library)
     known = [*frame, *listed]
     for section, values in sections.items():
@@ -137,7 +139,9 @@ def model_from_dict(given: Mapping[str, Any], name: str, library: Library, folde
         sections["arm_load"] = coefficients(sections["arm_load"], sections.get("piston", {}).get("stroke"), folder)
     values = {f"{section}.{key}": _number(v) for section, inner in sections.items() for key, v in inner.items()}
     uncertainty = flat(given[SECTION]) if SECTION in given else {}
-    return Model.build(listed, values, name=name, library=library, frame=frame, uncertainty=uncertainty)
+    return Model.build(
+        listed, values, name=name, library=library, frame=frame, uncertainty=uncertainty, coordinate=given.get(KEY)
+    )
 
 
 def _frame(sections: Collection[str], library: Library) -> tuple[str, ...]:
@@ -165,6 +169,8 @@ def machine_text(model: Model, notes: Mapping[str, str] | None = None) -> str:
     """The machine file of a model, with unit and meaning beside every value, and `notes` by dotted name."""
     effects = ", ".join(model.effects) or '""'  # ROS cannot know the type of an empty list
     lines = ["/**:", "  ros__parameters:", f"    effects: [{effects}]"]
+    if model.coordinate != LINE:
+        lines.append(f"    {KEY}: {model.coordinate}  # in rad, N m and kg m2")
     section = ""
     for dotted, value in model.parameters.items():
         owner, _, key = dotted.partition(".")

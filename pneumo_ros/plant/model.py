@@ -12,6 +12,7 @@ from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant.actuator import SIDES, Actuator, Chamber
 from pneumo_ros.plant.compose import Composition, compose
+from pneumo_ros.plant.coordinate import Scale, coordinate_of
 from pneumo_ros.plant.effect import Effect, Parameter
 from pneumo_ros.plant.held import held_inputs, input_rows
 from pneumo_ros.plant.kernels import load_kernel
@@ -20,6 +21,7 @@ from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
 from pneumo_ros.plant.library import USUAL_FRAME, Library, is_part
 from pneumo_ros.plant.uncertainty import SECTION, deviations, nested
 from pneumo_ros.plant.usual import usual_size
+from pneumo_ros.units import KEY, LINE, TURN, unit_along
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # s, the default step
@@ -57,10 +59,12 @@ class Model:
         defaults: bool = False,
         uncertainty: Mapping[str, object] | None = None,
         measured: Iterable[str] = (),
+        coordinate: object = None,
     ) -> "Model":
         """A model of `effects` with `values` by dotted name, and `uncertainty`: deviations of some of them.
 
-        A missing value is an error unless `defaults` or unless its default adds nothing. `measured` as in `measuring`.
+        A missing value is an error unless `defaults` or unless its default adds nothing. `measured` as in `measuring`;
+        `coordinate`: "translation" or "rotation", by default that of `library` or of the part that actuates it.
 
         Raises UsageError, with the nearest names, for unknown or repeated effects and unknown, missing or bad values.
         """
@@ -69,6 +73,7 @@ class Model:
         repeated = sorted({n for n in names if names.count(n) > 1})
         if repeated:
             raise UsageError(f"effect {repeated[0]} is listed twice")
+        library = _along(library, coordinate, tuple(frame), values)
         parts = (*(library.part(f) for f in frame), *(library.find(n) for n in names))
         if sentence := without_chambers(parts, library):
             raise UsageError(sentence)
@@ -87,6 +92,23 @@ class Model:
     def effects(self) -> tuple[str, ...]:
         """Names of the effects, in order, without the frame: piston, air and what actuates the machine."""
         return tuple(e.name for e in self.composition.effects if not is_part(e))
+
+    @property
+    def coordinate(self) -> str:
+        """Whether it moves along a line, "translation", or turns, "rotation": in rad, N m and kg m2."""
+        return self.library.coordinate
+
+    def unit(self, along_a_line: str) -> str:
+        """The unit of this machine for one of a machine that moves along a line: rad for m where it turns."""
+        return unit_along(along_a_line, self.coordinate)
+
+    def require_metres(self, who: str) -> None:
+        """Raise UsageError, in which `who` plans in metres, for a machine that turns."""
+        if self.coordinate != LINE:
+            raise UsageError(
+                f"{who} plans in m and N; {self.name} turns, in rad and N m ('{KEY}: {TURN}'). Give a machine that "
+                f"moves along a line; of one that turns, simulate, compare, identify, diagnose, add and export do"
+            )
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -168,6 +190,7 @@ class Model:
     def as_dict(self) -> dict[str, object]:
         """The machine file as a nested dictionary: effects, section -> parameter -> value, and stated uncertainty."""
         result: dict[str, object] = {"effects": list(self.effects)}
+        result |= {} if self.coordinate == LINE else {KEY: self.coordinate}
         for dotted, value in self.parameters.items():
             section, _, key = dotted.partition(".")
             inner = result.setdefault(section, {})
@@ -239,7 +262,10 @@ class Model:
                 raise UsageError(f"initial {key} is {value}; it takes a finite number")
         reach = 0.5 * self["piston.stroke"]
         if abs(given.get("y", 0.0)) > 1.05 * reach:
-            raise UsageError(f"initial y is {given['y']:g} m, outside the stroke of {-reach:g} to {reach:g} m")
+            unit = self.unit("m")
+            raise UsageError(
+                f"initial y is {given['y']:g} {unit}, outside the stroke of {-reach:g} to {reach:g} {unit}"
+            )
         return self._begin(given)
 
     def continued(self, other: "Model", state: ArrayLike) -> Array:
@@ -459,6 +485,15 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
     stride = max(1, math.ceil(sample_time / step - 1e-9))
     return stride, sample_time / stride
+
+
+def _along(library: Library, coordinate: object, frame: tuple[str, ...], values: Mapping[str, object]) -> Library:
+    """The library for the coordinate of a machine; one that turns already, and its scale, stay."""
+    given = coordinate if coordinate is not None or library.coordinate == LINE else library.coordinate
+    found = coordinate_of(given, tuple(library.part(name) for name in frame))
+    if found == library.coordinate or found == LINE:
+        return library
+    return library.turning(Scale.of(values, any(name in library.actuators() for name in frame)))
 
 
 def _whole(voltages: int, parts: int) -> int:

@@ -25,8 +25,8 @@ def whole_step(s: str, rates: list[str], weight: str) -> str:
 
 
 def is_velocity(s: str, resolver: "Resolver") -> bool:
-    """Whether a state takes its step with the velocities: its unit is m/s."""
-    return resolver.states[s].states[s].unit == "m/s"
+    """Whether a state takes its step with the velocities."""
+    return resolver.states[s].states[s].is_velocity
 
 
 def kick(velocities: list[str], rates: list[str]) -> list[str]:

@@ -15,6 +15,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.reading.steady import check_steady, travel
 from pneumo_ros.runs.noise import noise_level, resolution
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 
@@ -73,8 +74,9 @@ def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
     blocks = run.position[: len(run) // width * width].reshape(-1, width).mean(axis=1)
     if np.ptp(blocks) < still:
         yield (
-            f"the piston does not move: its position stays at {np.mean(blocks):.4g} m within "
-            f"{1e3 * np.ptp(blocks):.2g} mm for {run.time[-1]:.3g} s, so friction cannot be judged; if it did move, "
+            f"the piston does not move: its position stays at {np.mean(blocks):.4g} {shown('m')} within "
+            f"{1e3 * np.ptp(blocks):.2g} {shown('mm')} for {run.time[-1]:.3g} s, so friction "
+            "cannot be judged; if it did move, "
             "look at the position sensor"
         )
         return
@@ -85,7 +87,8 @@ def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:
             continue
         if why := _pushed(model, run, start, stop):
             yield (
-                f"the piston does not move {_span(run, start, stop)}, at {run.position[start]:.4g} m, although {why}: "
+                f"the piston does not move {_span(run, start, stop)}, at "
+                f"{run.position[start]:.4g} {shown('m')}, although {why}: "
                 "it is stuck or held by something that the model lacks, or its position sensor hangs, or the valve "
                 "does not open as in the model; this part is used like the rest"
             )
@@ -109,7 +112,7 @@ def _pushed(model: Model, run: Run, start: int, stop: int) -> str:
     force = _force(model, run)[start:stop]
     pushing = float(np.sum(np.abs(force) > 1.5 * static)) * run.sample_time
     if pushing > 0.5 * LONG:
-        return f"{np.max(np.abs(force)):.3g} N push it, against {static:.3g} N of static friction"
+        return f"{np.max(np.abs(force)):.3g} {shown('N')} push it, against {static:.3g} {shown('N')} of static friction"
     fewest = _FILLS if (stop - start) * run.sample_time < _LATER else _FEWER
     if model.has_valve and (fills := _fills(model, run, start, stop)) > fewest:
         return f"the valve passes {fills:.1f} times the air that fills a chamber"
@@ -144,8 +147,10 @@ def _commands(run: Run) -> Iterator[str]:
     if min(out, back) > _TRAVEL:
         when = f"after {run.time[last]:.3f} s" if last else "at all"
         yield (
-            f"valve/command does not change {when}, held at {run.held[-1]:.4g} V, while the piston travels {out:.3g} m "
-            f"out and {back:.3g} m back: it may not drive the valve; flows and pressures cannot be judged then"
+            f"valve/command does not change {when}, held at {run.held[-1]:.4g} V, while the "
+            f"piston travels {out:.3g} {shown('m')} "
+            f"out and {back:.3g} {shown('m')} back: it may not drive the valve; flows and "
+            "pressures cannot be judged then"
         )
 
 

@@ -15,6 +15,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.records import Recording
 from pneumo_ros.records.corrections import LENGTH_UNITS
 from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 
@@ -62,8 +63,9 @@ def imposed_note(model: Model, run: Run) -> Iterator[str]:
     off = float(np.median(np.abs(np.nan_to_num(moved - there, nan=np.inf))))
     if off > _FAR * np.ptp(run.position):
         yield (
-            f"the measured force would move the piston of '{model.name}' by {off:.3g} m more within "
-            f"{samples * run.sample_time:.2g} s than it moved, and it travelled {np.ptp(run.position):.3g} m in all: "
+            f"the measured force would move the piston of '{model.name}' by {off:.3g} {shown('m')} more within "
+            f"{samples * run.sample_time:.2g} s than it moved, and it travelled "
+            f"{np.ptp(run.position):.3g} {shown('m')} in all: "
             "if a test machine imposed the motion, type --imposed, and the force is predicted; else look at the zero "
             "and unit of the force, and at the machine file's friction"
         )

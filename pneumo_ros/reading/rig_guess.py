@@ -21,6 +21,7 @@ from pneumo_ros.reading.read import ATMOSPHERE
 from pneumo_ros.records import Recording
 from pneumo_ros.records.corrections import PRESSURE_UNITS, corrected, number
 from pneumo_ros.runs.run import Run, run_for
+from pneumo_ros.units import shown
 
 LOWEST, HIGHEST = 3e4, 1.4e6  # Pa, the highest pressure that an axis reads while it moves, gauge or absolute
 SECONDS = 30.0  # of the recording that are looked at
@@ -96,7 +97,9 @@ def guess_rig(
     factor = 1e-3 if lengths else 1.0
     travelled = factor * max(float(np.ptp(part.position)) for part in parts)
     if travelled < SLOWEST:
-        raise DataError(f"{names}: the piston moves {1e3 * travelled:.2g} mm; record a run that moves it both ways")
+        raise DataError(
+            f"{names}: the piston moves {1e3 * travelled:.2g} {shown('mm')}; record a run that moves it both ways"
+        )
     found = list[Hypothesis]()
     for choice in itertools.product(
         _sensors(parts, known), ((), ("swapped-chambers",)), ((), ("reversed-position",)), ((), ("reversed-voltage",)),

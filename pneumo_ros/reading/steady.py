@@ -15,6 +15,7 @@ from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import shown
 
 Array = NDArray[np.float64]
 Verdict = Literal["vented", "steady", "dead", "open"]
@@ -111,7 +112,9 @@ def _gauge(model: Model, run: Run, chamber: str) -> str:
     one = model[f"piston.area_{chamber}"] * model["air.atmospheric_pressure"]
     if left is None or abs(side * left[1] / one - 1.0) > _GAUGE:
         return ""
-    return f" (gauge pressure, it seems: {one:.3g} N are missing; add the atmosphere's where it is published)"
+    return (
+        f" (gauge pressure, it seems: {one:.3g} {shown('N')} are missing; add the atmosphere's where it is published)"
+    )
 
 
 def _refuse_frozen(run: Run, out: float, back: float) -> None:
@@ -132,7 +135,7 @@ def _dead(chamber: str, pressure: Array, motion: str, uncertain: bool) -> str:
 
 
 def _motion(out: float, back: float) -> str:
-    return f"while the piston travels {out:.3g} m out and {back:.3g} m back"
+    return f"while the piston travels {out:.3g} {shown('m')} out and {back:.3g} {shown('m')} back"
 
 
 def travel(run: Run, since: int) -> tuple[float, float]:

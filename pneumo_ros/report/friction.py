@@ -7,6 +7,7 @@ import numpy as np
 from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Chart, Panel, Role, Section, Trace
 from pneumo_ros.report.markup import tag
+from pneumo_ros.units import shown
 
 _ROLES: dict[str, Role] = {"extending": "first", "retracting": "second"}
 
@@ -42,7 +43,14 @@ def _chart(directions: dict[str, Any]) -> Chart:
         gap += [Trace(f"{name}, 95 %", role, "band", v, low - model, high - model),
                 Trace(f"{name}, measured", role, "dots", v, f - model)]  # fmt: skip
         worst = int(np.nanargmax(np.abs(f - model)))
-        said.append(f"{name} by up to {number(f[worst] - model[worst])} N at {number(v[worst])} m/s")
-    panels = (Panel("friction force [N]", tuple(force), share=1.5), Panel("measured - model [N]", tuple(gap)))
+        said.append(
+            f"{name} by up to {number(f[worst] - model[worst])} {shown('N')} at {number(v[worst])} {shown('m/s')}"
+        )
+    panels = (
+        Panel(f"friction force [{shown('N')}]", tuple(force), share=1.5),
+        Panel(f"measured - model [{shown('N')}]", tuple(gap)),
+    )
     words = f"Measured differs from the model {', '.join(said)}."
-    return Chart("friction-map", "Friction over velocity", words, "speed [m/s]", panels, log_x=True, height=480)
+    return Chart(
+        "friction-map", "Friction over velocity", words, f"speed [{shown('m/s')}]", panels, log_x=True, height=480
+    )

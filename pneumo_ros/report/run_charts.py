@@ -9,6 +9,7 @@ from pneumo_ros.compare.regimes import stretches
 from pneumo_ros.compare.wording import EQUATIONS, REGIMES, SIGNALS, amount, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Role, Trace
 from pneumo_ros.report.series import extremes
+from pneumo_ros.units import shown
 
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import RunComparison
@@ -99,7 +100,7 @@ def _broken(time: Array, value: Array, noise: Array) -> tuple[Array, Array, Arra
 
 def _regime_chart(run: "RunComparison", link: str) -> Chart:
     grid = run.motion.run
-    words, unit = ("driving force", "N") if grid.force_driven else ("valve voltage", "V")
+    words, unit = ("driving force", shown("N")) if grid.force_driven else ("valve voltage", "V")
     names = [name for name in REGIMES if name in run.masks and run.masks[name].any()]
     spans = []
     for row, name in enumerate(names):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.wording import number
 from pneumo_ros.report.chart import Chart, Panel, Section, Trace
 from pneumo_ros.report.markup import tag
+from pneumo_ros.units import shown
 from pneumo_ros.wording.identification import before_and_after
 
 Array = NDArray[np.float64]
@@ -30,19 +31,20 @@ def _chart(result: dict[str, Any]) -> Chart:
         Trace("noise, 95 %", "quiet", "band", velocity[order], -1.96 * spread[order], 1.96 * spread[order]),
         Trace("measured - identified", "measured", "dots", velocity, residual),
     )
-    panels = (_friction_panel(result), Panel("residual [N]", below))
+    panels = (_friction_panel(result), Panel(f"residual [{shown('N')}]", below))
     said = (
-        f"{len(velocity)} windows at {number(np.abs(velocity).min())} to {number(np.abs(velocity).max())} m/s; "
-        f"residuals {number(result['map']['residual_rms_n'])} N rms."
+        f"{len(velocity)} windows at {number(np.abs(velocity).min())} to "
+        f"{number(np.abs(velocity).max())} {shown('m/s')}; "
+        f"residuals {number(result['map']['residual_rms_n'])} {shown('N')} rms."
     )
-    return Chart("static-map", "Friction over velocity", said, "velocity [m/s]", panels, height=560)
+    return Chart("static-map", "Friction over velocity", said, f"velocity [{shown('m/s')}]", panels, height=560)
 
 
 def before_after_chart(result: dict[str, Any]) -> Chart:
     """Friction alone, as low as the first page has room for: measured, before and identified."""
     words = before_and_after(result["map"])
     panels = (_friction_panel(result),)
-    return Chart("before-after", "Friction before and after", words, "velocity [m/s]", panels, height=280)
+    return Chart("before-after", "Friction before and after", words, f"velocity [{shown('m/s')}]", panels, height=280)
 
 
 def _friction_panel(result: dict[str, Any]) -> Panel:
@@ -58,7 +60,7 @@ def _friction_panel(result: dict[str, Any]) -> Panel:
     if breaks:
         level = np.array([b["direction"] * b["force_n"] for b in breaks])
         traces.append(Trace("breakaways, at rest", "second", "dots", np.zeros(len(breaks)), level))
-    return Panel("friction force [N]", tuple(traces), share=2.0)
+    return Panel(f"friction force [{shown('N')}]", tuple(traces), share=2.0)
 
 
 def _arrays(found: dict[str, Any], *keys: str) -> list[Array]:

@@ -17,6 +17,7 @@ from pneumo_ros.records import Recording
 from pneumo_ros.records.unfit import check_use
 from pneumo_ros.runs.noise import noise_level
 from pneumo_ros.runs.smooth import Smoothed, smoothed
+from pneumo_ros.units import LINE, TURN
 
 Array = NDArray[np.float64]
 
@@ -32,7 +33,8 @@ SENSORS = {  # topic of each input beside U
     **{one.input: one.topic for one in MEASURED},
 }
 POSITION, METERED = "position_m", "metered_flow_a"
-_MILLIMETRES = 20.0  # half strokes: beyond, positions are in mm or wrong
+_SMALL = {LINE: ("mm", 1e3), TURN: ("deg", 180.0 / np.pi)}  # in which positions come, too
+_LEAST = 0.02  # of half the stroke: a unit in which the piston moves less is not named
 ATMOSPHERE = 101325.0  # Pa, for machine files without it
 
 
@@ -277,13 +279,15 @@ def check_position(model: Model, run: Run) -> None:
     farthest = int(np.argmax(np.abs(run.position)))
     most = abs(run.position[farthest])
     if most > 1.05 * reach:
-        unit = "; if it is in mm, type --read-as mm" if _MILLIMETRES * reach < most < 1050.0 * reach else ""
+        m, (small, factor) = model.unit("m"), _SMALL[model.coordinate]
+        in_small = _LEAST * factor * reach < most < 1.05 * factor * reach
+        unit = f"; if it is in {small}, type --read-as {small}" if in_small else ""
         if most <= 2.05 * reach and np.ptp(run.position) <= 2.05 * reach:
-            zero = 1e3 * reach * np.sign(run.position[farthest])
-            unit = f"; if it is zero at an end, type --read-as zero={zero:g}mm; pneumo rig check finds such things"
+            zero = factor * reach * np.sign(run.position[farthest])
+            unit = f"; if it is zero at an end, type --read-as zero={zero:g}{small}; pneumo rig check finds such things"
         raise DataError(
-            f"{run.name}: the position is {run.position[farthest]:.4g} m at {run.time[farthest]:.3f} s, outside the "
-            f"stroke of {model.name}, {-reach:g} to {reach:g} m{unit}; positions are in m from mid stroke, and the "
+            f"{run.name}: the position is {run.position[farthest]:.4g} {m} at {run.time[farthest]:.3f} s, outside the "
+            f"stroke of {model.name}, {-reach:g} to {reach:g} {m}{unit}; positions are in {m} from mid stroke, and the "
             "machine file sets piston.stroke"
         )
 

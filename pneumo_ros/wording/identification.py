@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from pneumo_ros.compare.wording import number
+from pneumo_ros.units import shown
 from pneumo_ros.wording.naming import sentence
 from pneumo_ros.wording.table import Table
 
@@ -20,7 +21,10 @@ def found_table(result: dict[str, Any]) -> Table:
 def before_and_after(found: dict[str, Any]) -> str:
     """How far the measured friction is off the static map of the machine file before, and off the one found."""
     before, after = found["residual_before_rms_n"], found["residual_rms_n"]
-    return f"Friction in steady motion was {number(before)} N rms off the machine file, and is {number(after)} N now."
+    return (
+        f"Friction in steady motion was {number(before)} {shown('N')} rms off the machine file, and "
+        f"is {number(after)} {shown('N')} now."
+    )
 
 
 def estimate_words(one: dict[str, Any]) -> tuple[str, str]:
@@ -59,7 +63,7 @@ def _amount(one: dict[str, Any]) -> str:
 def map_sentence(found: dict[str, Any]) -> str:
     """Whether noise explains the residuals of the static map."""
     share, ratio = number(100.0 * found["share_of_force"], 2), number(found["ratio_to_noise"], 2)
-    size = f"{number(found['residual_rms_n'])} N rms, {share} % of the force and {ratio} x the noise"
+    size = f"{number(found['residual_rms_n'])} {shown('N')} rms, {share} % of the force and {ratio} x the noise"
     if found["explained_by_noise"]:
         return f"The static map fits: residuals are {size}."
     if found["fits"]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.compare.wording import SIGNALS
 from pneumo_ros.records import Recording
+from pneumo_ros.units import shown
 from pneumo_ros.workbench.columns import Column
 
 Array = NDArray[np.float64]
@@ -64,26 +65,26 @@ def curve(name: str, recording: Recording, rig: Rig, columns: Mapping[str, Colum
 def _input(recording: Recording) -> Curve | None:
     driven = recording.voltage is None
     values = recording.effort if driven else recording.voltage
-    words, unit = ("driving force", "N") if driven else ("valve voltage", "V")
+    words, unit = ("driving force", shown("N")) if driven else ("valve voltage", "V")
     return None if values is None else Curve(words, unit, recording.time, values, steps=True)
 
 
 def _velocity(recording: Recording) -> Curve:
     """As measured, else from the positions 10 ms before and after."""
     if recording.velocity is not None:
-        return Curve("velocity", "m/s", recording.time, recording.velocity)
+        return Curve("velocity", shown("m/s"), recording.time, recording.velocity)
     half, time = 0.5 * _SMOOTH, recording.time
     ends = [np.interp(np.clip(time + off, time[0], time[-1]), time, recording.position) for off in (-half, half)]
     spans = np.clip(time + half, time[0], time[-1]) - np.clip(time - half, time[0], time[-1])
-    return Curve("velocity from positions", "m/s", time, (ends[1] - ends[0]) / np.maximum(spans, 1e-9))
+    return Curve("velocity from positions", shown("m/s"), time, (ends[1] - ends[0]) / np.maximum(spans, 1e-9))
 
 
 def _effort(recording: Recording, rig: Rig) -> Curve | None:
     """As measured, else from both pressures: A_a p_a - A_b p_b - p_atm (A_a - A_b)."""
     a, b = recording.pressure_a, recording.pressure_b
     if recording.effort is not None:
-        return Curve("force", "N", recording.time, recording.effort)
+        return Curve("force", shown("N"), recording.time, recording.effort)
     if a is None or b is None:
         return None
     force = rig.area_a * a - rig.area_b * b - rig.atmosphere * (rig.area_a - rig.area_b)
-    return Curve("force from pressures", "N", recording.time, force)
+    return Curve("force from pressures", shown("N"), recording.time, force)

@@ -11,6 +11,7 @@ from pneumo_ros.files import write_whole
 from pneumo_ros.plant import Model, save_model
 from pneumo_ros.plant.axes_section import from_anywhere
 from pneumo_ros.reading.read import ATMOSPHERE, ReadOptions
+from pneumo_ros.units import LINE
 from pneumo_ros.workbench.job import Job
 from pneumo_ros.workbench.live import Live
 from pneumo_ros.workbench.mapping import Mapped, edited, free_name, map_text, mapped
@@ -47,6 +48,7 @@ class Desk:
         self.folder, self.given = folder, given
         self.lock = threading.RLock()
         self.variants = [Variant(0, from_anywhere(given.machine), "as given")]
+        self._coordinates = dict[str, str]()  # by machine file
         self.current, self.revision, self.message = 0, 0, ""
         self.chosen = 0  # counts the changes to another variant
         self.ticked: frozenset[str] = frozenset(self.model().effects)
@@ -72,6 +74,17 @@ class Desk:
         """The model of a variant, by default of the current one."""
         chosen = self.variant if number is None else self.variants[number]
         return model_of(chosen.machine, self.folder, self.given.effects)
+
+    @property
+    def coordinate(self) -> str:
+        """Of the current machine; that of a line where its file cannot be read, which the panels say."""
+        machine = self.variant.machine
+        try:
+            if machine not in self._coordinates:
+                self._coordinates[machine] = self.model().coordinate
+        except PneumoError:
+            return LINE
+        return self._coordinates[machine]
 
     def lineage(self, number: int | None = None) -> list[Variant]:
         """The variants from the machine as given to a variant."""

@@ -8,6 +8,7 @@ from dash import ClientsideFunction, Input, Output, State, dcc, html
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.report.markup import Html, tag
+from pneumo_ros.units import shown
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.live import KEPT, Live
 from pneumo_ros.workbench.parts import Panels, asked, button, revision
@@ -165,7 +166,7 @@ def state(curves: dict[str, tuple[list[float], list[float]]]) -> str:
         times, values = (np.array(column) for column in curves.get("position", ([0.0], [0.0])))
         late = times > times[-1] - 0.5
         speed = float(np.ptp(values[late])) / 0.5
-    return f"The piston {'sticks' if speed < _RESTS else 'slides'}, {speed:.4f} m/s."
+    return f"The piston {'sticks' if speed < _RESTS else 'slides'}, {speed:.4f} {shown('m/s')}."
 
 
 def live_chart(curves: dict[str, tuple[list[float], list[float]]]) -> dict[str, Any]:

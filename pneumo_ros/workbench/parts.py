@@ -9,6 +9,7 @@ from dash import Dash, Input, Output, State, dcc, html
 from dash.exceptions import PreventUpdate
 
 from pneumo_ros.errors import PneumoError
+from pneumo_ros.units import writing
 from pneumo_ros.workbench.desk import Desk
 from pneumo_ros.workbench.desks import Desks
 
@@ -68,7 +69,8 @@ class Panels:
                 desk = self.desks.of(values[-1])
             except KeyError:
                 raise PreventUpdate from None
-            return function(desk, *values[:-1])
+            with writing(desk.coordinate):
+                return function(desk, *values[:-1])
 
         return found
 

@@ -12,7 +12,12 @@ from pneumo_ros.workbench.parts import Panels, asked, button, drop_down, revisio
 from pneumo_ros.workbench.quantity import typed
 from pneumo_ros.workbench.uploads import MACHINES
 
-SHIPPED = {"axis": "the example axis", "paper": "the axis of the paper", "emps": "a ball screw driven by a motor"}
+SHIPPED = {
+    "axis": "the example axis",
+    "paper": "the axis of the paper",
+    "emps": "a ball screw driven by a motor",
+    "vane": "a rotary vane actuator",
+}
 _DIGITS = 10  # of a number that is edited
 _TEXT = (
     "The machine file describes your rig. Choose one, or start from an example and type the numbers of your data "

@@ -63,7 +63,7 @@ def test_without_a_compiler_an_fmu_says_what_to_install(
         (["fmu", "axis", "--out", "axis.zip"], 2, "this file ends in .fmu: --out axis.fmu"),
         (["mjcf", "axis", "--out", "axis.mjcf"], 2, "this file ends in .xml: --out axis.xml"),
         (["mjcf", "emps", "--out", "axis.xml"], 2, "emps has no chambers"),
-        (["c", "axes", "--out", "axis.c"], 3, "give a YAML file or one of: axis, emps, paper"),
+        (["c", "axes", "--out", "axis.c"], 3, "give a YAML file or one of: axis, emps, paper, vane"),
     ],
 )
 def test_refusals_say_what_to_type_and_leave_no_file(

@@ -106,7 +106,7 @@ def too_early(fmu: Any) -> None:
     ("act", "said"),
     [
         (chosen_step, "integration_step is 0"),
-        (too_heavy, "piston.mass is 1e+09; allowed is 1e-07 to 10000"),
+        (too_heavy, "piston.mass is 1e+09; allowed is 0.001 to 10000"),
         (no_number, "not finite"),
         (an_output, "cannot be set"),
         (no_volume, "increase chambers.volume_a"),

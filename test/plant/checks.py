@@ -9,6 +9,7 @@ from plant.units import Quantity, quantity, unit, with_units
 from pneumo_ros.plant import Effect, Model
 from pneumo_ros.plant.library import FRAME
 from pneumo_ros.plant.signals import SIGNALS
+from pneumo_ros.units import LINE, unit_along
 
 CYCLES = ((0.0, 1e-5, 20.0), (0.5, 2e-3, 5.0), (0.9, 0.15, 2.0))  # centre [m], amplitude [m], frequency [Hz]
 
@@ -36,24 +37,31 @@ def check_documentation(effect: type[Effect]) -> None:
         assert state.meaning, key
 
 
-def declared_unit(name: str, effect: type[Effect]) -> Quantity:
-    """Unit of what an effect returns under that name."""
+def declared_unit(name: str, effect: type[Effect], coordinate: str = LINE) -> Quantity:
+    """Unit of what an effect returns under that name, in a machine of that coordinate."""
     kind, _, state = name.partition("_")
     if kind in ("der", "rate") and state in effect.states:
-        return (unit(effect.states[state].unit) if kind == "der" else unit("1")) / unit("s")
-    return unit(effect.states[name].unit if name in effect.states else SIGNALS[name].unit)
+        return (unit(unit_along(effect.states[state].unit, coordinate)) if kind == "der" else unit("1")) / unit("s")
+    return unit(unit_along(effect.states[name].unit if name in effect.states else SIGNALS[name].unit, coordinate))
 
 
-def check_units(effect: type[Effect]) -> None:
-    """Run the effect's functions on quantities: added or compared units match, the results are as declared."""
+def check_units(effect: type[Effect], coordinate: str = LINE) -> None:
+    """Run the effect's functions on quantities: added or compared units match, the results are as declared.
+
+    In a machine of that coordinate: along a line in m and N, or turning in rad and N m.
+    """
+
+    def given(name: str) -> Quantity:
+        return unit(unit_along(meaning(name, effect)[0], coordinate)) * argument(name, effect, random)
+
     random = seeded(effect.name)
     for key in functions(effect):
         function, aware, seen = effect.functions[key], with_units(vars(effect)[key]), set()
         for _ in range(60):
-            returned = aware(*(unit(meaning(a, effect)[0]) * argument(a, effect, random) for a in function.reads))
+            returned = aware(*map(given, function.reads))
             values = returned if isinstance(returned, tuple) else (returned,)
             for name, value in zip(function.writes, map(quantity, values), strict=True):
-                declared = declared_unit(name, effect)
+                declared = declared_unit(name, effect, coordinate)
                 assert value.fits(declared), f"{name} comes out as {value}, it is declared as {declared}"
                 seen |= {name} if value.value else set()
         assert seen == set(function.writes), f"always zero: {set(function.writes) - seen}"

@@ -57,7 +57,7 @@ BAD = {  # fault: file, text of the error
         "/**:\n  ros__parameters:\n    effects: [arctan_flow]\n    piston: {mass: 5.0}\n",
         r"arctan_flow needs section 'chambers' \(it reads p_a\); add section 'chambers' with volume_a, volume_b",
     ),
-    "out of range": (TEXT.replace("mass: 5.0", "mass: -5.0"), r"piston.mass is -5.0 kg; allowed is 1e-07 to 10000"),
+    "out of range": (TEXT.replace("mass: 5.0", "mass: -5.0"), r"piston.mass is -5.0 kg; allowed is 0.001 to 10000"),
     "not a number": (TEXT.replace("mass: 5.0", "mass: .nan"), r"piston.mass is nan kg"),
     "infinite": (TEXT.replace("mass: 5.0", "mass: .inf"), r"piston.mass is inf kg"),
     "infinite as text": (TEXT.replace("mass: 5.0", "mass: 1e999"), r"piston.mass is inf kg"),

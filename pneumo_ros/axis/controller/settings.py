@@ -19,6 +19,7 @@ from pneumo_ros.plant.closed import says_closed
 from pneumo_ros.plant.library import ACTUATORS, FRAME, USUAL_ACTUATOR, Library
 from pneumo_ros.plant.uncertainty import SECTION
 from pneumo_ros.records.contract import JOINT
+from pneumo_ros.units import KEY, LINE
 
 SHAPES = ("topic", "constant", "steps", "sine")
 _DEAD_ZONE = ("right_limit", "left_limit", "right_slope", "left_slope")
@@ -131,16 +132,23 @@ def check(values: Mapping[str, Any]) -> None:
 
 
 def of_a_machine_file(given: Mapping[str, Any]) -> set[str]:
-    """Names that a machine file brought along and that no law uses; UsageError for another actuator than `chambers`."""
+    """Names that a machine file brought along and that no law uses; UsageError for a machine that turns
+    or has another actuator than `chambers`.
+    """
     effects = given.get(EFFECTS)
     if effects is None:
         return set()
+    if given.get(KEY, LINE) != LINE:
+        raise UsageError(
+            f"laws of control plan in m and N; the machine file says '{KEY}: {given[KEY]}', in rad and N m. "
+            "Give one of a machine that moves along a line"
+        )
     if other := sorted({name.partition(".")[0] for name in given} & {*ACTUATORS} - {USUAL_ACTUATOR}):
         raise UsageError(
             f"laws of control need chambers on both sides of the piston; the machine file has a section '{other[0]}'. "
             f"Give one with a section '{USUAL_ACTUATOR}'"
         )
-    sections = {*FRAME, *effects, SECTION}
+    sections = {*FRAME, *effects, KEY, SECTION}
     return {name for name in given if name.partition(".")[0] in sections}
 
 

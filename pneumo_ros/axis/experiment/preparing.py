@@ -25,7 +25,9 @@ def prepare(values: Mapping[str, Any], effects_files: tuple[str | Path, ...]) ->
     else:
         chosen = values["model_given"] or rig.machine
         model = values["model"] if values["model_given"] or not rig.machine else rig.machine
-        programme = make_programme(values["experiment"], load_model(model, effects_files))
+        machine = load_model(model, effects_files)
+        machine.require_metres("an experiment")
+        programme = make_programme(values["experiment"], machine)
         if not chosen:  # the default machine is not a word on this rig
             programme = replace(programme, says_closed=False)
     programme = within(programme, rig.limits)

@@ -14,6 +14,7 @@ from pneumo_ros.nearest import unknown_name
 from pneumo_ros.plant import Library, Model, load_model, model_from_dict
 from pneumo_ros.plant.axes_section import AXES, SUPPLY
 from pneumo_ros.plant.closed import SECOND
+from pneumo_ros.units import shown
 
 TOPICS = (SECOND, LOAD)  # inputs that the simulator gets as topics, beside the voltage
 
@@ -91,7 +92,8 @@ def check_live(model: Model, before: Model, position: float) -> None:
     static, coulomb = (values.get(f"lugre_friction.{name}_friction", 0.0) for name in ("static", "coulomb"))
     if static < coulomb:
         raise UsageError(
-            f"static friction {static:g} N is below Coulomb friction {coulomb:g} N: it takes as much or more; "
+            f"static friction {static:g} {shown('N')} is below Coulomb friction {coulomb:g} "
+            f"{shown('N')}: it takes as much or more; "
             "set both together to change both"
         )
     supply, atmosphere = values["air.supply_pressure"], values["air.atmospheric_pressure"]
@@ -102,7 +104,8 @@ def check_live(model: Model, before: Model, position: float) -> None:
     reach = 0.5 * values["piston.stroke"]
     if values["piston.stroke"] != before["piston.stroke"] and abs(position) > 1.05 * reach:
         raise UsageError(
-            f"the piston is at {position:.4g} m, outside of a stroke of {2.0 * reach:g} m; move it inside first"
+            f"the piston is at {position:.4g} {shown('m')}, outside of a stroke of {2.0 * reach:g} "
+            f"{shown('m')}; move it inside first"
         )
     model.state()  # chambers keep a volume at both ends
 

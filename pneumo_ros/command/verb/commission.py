@@ -76,6 +76,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     check_writable(options.control)
     report = prepare_report(options)
     model = chosen_model(options)
+    model.require_metres("commissioning")
     check_one_command(model)
     job = _job(options, console, model)
     wired = job.wiring()

@@ -21,6 +21,7 @@ from pneumo_ros.compare.typical import typical_error
 from pneumo_ros.compare.wording import EQUATIONS, SIGNALS, TARGETS
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_writable, write_whole
+from pneumo_ros.units import LINE
 
 if TYPE_CHECKING:
     from pneumo_ros.compare.compare import Comparison, RunComparison
@@ -97,7 +98,8 @@ def _next(options: argparse.Namespace, model: "Model", result: dict[str, Any]) -
         return f"diagnose {shlex.join(fitted)} --holdout {shlex.join(held)}{how}"
     if step == "diagnose":
         return f"diagnose OTHER_BAG... --holdout {shlex.quote(options.bags[0])}{how}"
-    return f"tune{named} --out my_cascade.yaml" if len(model.chambers) > 1 else f"effects{named}"
+    controlled = len(model.chambers) > 1 and model.coordinate == LINE
+    return f"tune{named} --out my_cascade.yaml" if controlled else f"effects{named}"
 
 
 def _write_series(comparison: "Comparison", path: str) -> None:

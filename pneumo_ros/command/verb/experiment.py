@@ -26,6 +26,7 @@ from pneumo_ros.files import check_writable, write_whole
 if TYPE_CHECKING:
     from pneumo_ros.experiment.programme import Programme
     from pneumo_ros.experiment.rehearsal import Rehearsal
+    from pneumo_ros.plant import Model
 
 FORMATS = (".yaml", ".yml", ".csv")
 TIMEOUT = 200.0  # ms
@@ -120,13 +121,20 @@ def _list(console: Console) -> int:
     return 0
 
 
+def _model(options: argparse.Namespace) -> "Model":
+    """The machine, along whose stroke in m the trials are planned."""
+    model = chosen_model(options)
+    model.require_metres("an experiment")
+    return model
+
+
 def _named(options: argparse.Namespace) -> "Programme":
     """The programme of an experiment called NAME, or of a programme file."""
     from pneumo_ros.experiment.catalogue import make_programme
     from pneumo_ros.experiment.programme_file import read_programme
 
     if Path(options.name).suffix not in FORMATS[:2]:
-        made = make_programme(options.name, chosen_model(options), options.voltages, options.seconds)
+        made = make_programme(options.name, _model(options), options.voltages, options.seconds)
         return declared(made, options)
     if options.voltages or options.seconds is not None:
         raise UsageError(f"--voltages and --seconds are not for a programme file; change them in {options.name}")
@@ -142,7 +150,7 @@ def _chosen(options: argparse.Namespace, console: Console, dry: bool) -> "tuple[
 
     noise, (first, second) = Noise(), options.separate
     with console.progress("Separating") as progress:
-        ranked = separate(chosen_model(options), first, second, noise=noise, progress=progress)
+        ranked = separate(_model(options), first, second, noise=noise, progress=progress)
     sentence = suggestion(ranked, first, second, options.model)
     console.say(f"{separation_text(ranked, options.separate, noise)}\n\n{sentence}\n")
     found, most = best(ranked, by_hand=dry or options.prepared), best(ranked)
@@ -157,7 +165,7 @@ def _rehearsed(programme: "Programme", options: argparse.Namespace) -> "Rehearsa
     from pneumo_ros.experiment.offers import conditions
     from pneumo_ros.experiment.rehearsal import rehearse
 
-    model = chosen_model(options)
+    model = _model(options)
     return rehearse(programme, conditions(programme, model).held(model))
 
 
@@ -177,7 +185,7 @@ def _smaller(
                 left_out = ", ".join(one.voltage.text for one in trials[kept:])
                 console.note(f"Left out, as the model would reach an end stop: {left_out}")
             return less, rehearsed
-    found = safe(programme, [chosen_model(options)])
+    found = safe(programme, [_model(options)])
     if found is None:
         return programme, rehearsal
     console.note("With smaller voltages, as the model would reach an end stop")

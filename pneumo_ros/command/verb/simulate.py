@@ -15,6 +15,7 @@ from pneumo_ros.command.noisy import EXAMPLE, parse_noise, with_noise
 from pneumo_ros.command.recordings import read_one
 from pneumo_ros.errors import UsageError
 from pneumo_ros.files import check_new_folder
+from pneumo_ros.units import shown
 
 if TYPE_CHECKING:
     from numpy.random import Generator
@@ -191,5 +192,6 @@ def extremes(signals: dict[str, Any]) -> list[tuple[str, ...]]:
             values = signals[name]
             numbers = (values[0], values[-1], values.min(), values.max())
             negligible = 1e-9 * abs(values).max()
-            rows.append((name, *(f"{number if abs(number) > negligible else 0.0:.5g}" for number in numbers), unit))
+            cells = (f"{number if abs(number) > negligible else 0.0:.5g}" for number in numbers)
+            rows.append((name, *cells, shown(unit)))
     return rows

@@ -52,6 +52,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     start, model = _start(options), chosen_model(options)
     if model.force_driven:
         raise UsageError(f"{model.name} has no valve to control; give a machine file with a section 'chambers'")
+    model.require_metres("a law of control")
     model.require_two_chambers("a law of control")
     check_one_command(model)
     model = centred(model)  # laws count their voltages from the closed signal

@@ -32,6 +32,7 @@ from pneumo_ros.ros.simulator.engine import Engine
 from pneumo_ros.ros.simulator.outlet import Outlet
 from pneumo_ros.ros.simulator.services import Reset, Services
 from pneumo_ros.ros.simulator.tuning import Tuning, initial_state
+from pneumo_ros.units import KEY
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Simulator(AxisNode):
 
     def _build(self, files: tuple[str | Path, ...], tolerated: Callable[[str], bool]) -> Simulation:
         values, member = self.parameters, self._member
-        values.refuse_unknown(lambda name: not member and (tolerated(name) or "." in name or name == EFFECTS))
+        values.refuse_unknown(lambda name: not member and (tolerated(name) or "." in name or name in (EFFECTS, KEY)))
         given = {name: value for name, value in values.given.items() if not tolerated(name)}
         model = member.model if member else machine_from_parameters(values["model"], given, files)
         values.declare([effects_setting(model), *machine_settings(model, list(model.parameters))])

@@ -38,9 +38,10 @@ class HeatExchange(Effect):
 
     With m = p V / (R T_g), Q = -m c_v theta / tau from the wall and gas that enters at T and leaves at T_g,
     theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). The heat may pass a film along the walls
-    that the gas touches, whose coefficient grows with sqrt(p T_g): then 1/tau is the rate at mid stroke and 4 bar. A
-    share s of the energy of gas and piston may go into the wall at once: with s alone the gas is polytropic with the
-    exponent n = gamma - s (gamma - 1).
+    that the gas touches, whose coefficient grows with sqrt(p T_g): then 1/tau is the rate at mid stroke and 4 bar. Its
+    walls are those of a round bore of the piston's area: leave the film at 0 in a machine that turns. A share s of the
+    energy of gas and piston may go into the wall at once: with s alone the gas is polytropic with the exponent
+    n = gamma - s (gamma - 1).
     """
 
     rate = Parameter(4.0, "1/s", "rate 1/tau at which the gas takes the wall's temperature", 0.0, 1e3, neutral=0.0)

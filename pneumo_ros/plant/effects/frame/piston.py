@@ -6,7 +6,7 @@ from pneumo_ros.plant.effect import Effect, Parameter, State
 class Piston(Effect):
     """Newton's second law of piston, rod and load, Eqs. 1-2: (M + dM) v' = drive - force - friction."""
 
-    mass = Parameter(5.0, "kg", "moving mass M of piston, rod and load", low=1e-7, high=1e4)  # kg m2 where rotary
+    mass = Parameter(5.0, "kg", "moving mass M of piston, rod and load", low=1e-3, high=1e4)
     area_a = Parameter(4.1e-4, "m2", "piston area A_a on the side of chamber a", low=1e-6, high=1.0)
     area_b = Parameter(3.0e-4, "m2", "piston area A_b on the side of chamber b, without the rod", low=1e-6, high=1.0)
     stroke = Parameter(2.0, "m", "stroke; y runs from -stroke/2 to stroke/2", low=1e-3, high=20.0)

@@ -1,0 +1,39 @@
+"""A vane that turns in a round casing, with air on both of its sides."""
+
+from pneumo_ros.plant.actuator import Actuator
+from pneumo_ros.plant.effect import Parameter, State
+
+
+class RotaryVane(Actuator):
+    """Balances of both chambers, Eqs. 3-4, over the angle y; torque M = D_a p_a - D_b p_b of the swept volumes D.
+
+    A vane of width b between radii r_1 and r_2 sweeps D = b (r_2^2 - r_1^2) / 2 per radian on both of its sides; n
+    vanes sweep n times as much. D_a and D_b are `area_a` and `area_b` of the piston, in m3/rad.
+    """
+
+    volume_a = Parameter(5e-4, "m3", "volume V_a0 of chamber a and its line at mid stroke", low=1e-8, high=10.0)
+    volume_b = Parameter(5e-4, "m3", "volume V_b0 of chamber b and its line at mid stroke", low=1e-8, high=10.0)
+
+    p_a = State("Pa", "pressure in chamber a, absolute", initial=1e5)
+    p_b = State("Pa", "pressure in chamber b, absolute", initial=1e5)
+
+    coordinate = "rotation"
+    source = "paper Eqs. 3-4 over an angle; Beater 2007, Pneumatic Drives (rotary actuators)"
+
+    def equations(
+        y, v, p_a, p_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b, heat_a, heat_b,
+        area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio,
+    ):  # fmt: skip
+        gamma = heat_capacity_ratio
+        R_T = gas_constant * temperature
+        V_a = volume_a + added_volume_a + area_a * y
+        V_b = volume_b + added_volume_b - area_b * y
+        der_p_a = (gamma * (R_T * (port_flow_a + flow_a) - area_a * v * p_a) + (gamma - 1.0) * heat_a) / V_a
+        der_p_b = (gamma * (R_T * (port_flow_b + flow_b) + area_b * v * p_b) + (gamma - 1.0) * heat_b) / V_b
+        drive = area_a * p_a - area_b * p_b
+        return der_p_a, der_p_b, drive
+
+    def caution(piston__area_a, piston__area_b):
+        if abs(piston__area_a - piston__area_b) > 0.1 * max(piston__area_a, piston__area_b):
+            return "a vane sweeps equal volumes per radian on both sides, and piston.area_a and area_b differ"
+        return ""
