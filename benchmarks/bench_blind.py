@@ -4,7 +4,8 @@ Each seed is a machine worn by 5 %, with other excitation and noise. `single` hi
 of its shapes, `pair` two, `triple` three; strengths are drawn from a fifth of the usual size to all of it. `outside`
 hides an effect that no catalogue has, `healthy` hides nothing; `rough` and `rough_healthy`: the same, but with a
 coloured force and a friction texture that no model has. `--excitation` names the kind of recordings
-(`rig.excitation.EXCITATIONS`), or `drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals (Wilson), and the targets.
+(`rig.excitation.EXCITATIONS`), or `drawn`: each machine its own kind, at random. Tables show rates with 95 % intervals
+(Wilson), and the targets.
 
     python benchmarks/bench_blind.py [--seeds 2] [--kind all] [--excitation usual] [--jobs 2]
 
