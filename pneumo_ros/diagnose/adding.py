@@ -11,7 +11,7 @@ import numpy as np
 
 from pneumo_ros.blas import on_one_thread
 from pneumo_ros.compare.compare import Comparison, compare
-from pneumo_ros.diagnose.coordinates import coordinates, starts
+from pneumo_ros.diagnose.coordinates import coordinates, forms, starts
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import Progress, polish
@@ -134,7 +134,9 @@ def _with(fitter: Fitter, model: Model, name: str, horizon: float) -> Model:
     """The model with one more effect, fitted along the signals from the best of several shapes."""
     fit = fitter.fit(model)
     own = coordinates(model.library.find(name))
-    begin = [Hypothesis(name, own, u, np.zeros(len(fit.names)), fit.residual) for u in starts(own)]
+    begin = [
+        Hypothesis(name, form, u, np.zeros(len(fit.names)), fit.residual) for form in forms(own) for u in starts(form)
+    ]
     best = max(refine(fit, begin), key=lambda h: h.likelihood)
     return fitter.simplest(fitter.refit(fitter.extended(model, best)), name, horizon)
 

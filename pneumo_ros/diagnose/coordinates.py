@@ -32,6 +32,7 @@ class Coordinate:
     high: float
     unit: str = ""
     role: str = ""
+    shapes: str = ""  # name of the size without which it does nothing
     wide: float = _WIDE  # prior deviation of a size, in typical sizes
 
     @property
@@ -126,7 +127,8 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     typical = p.default
     if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: the usual size is needed
         typical = p.neutral + usual_size(effect, key)
-    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit, p.role)
+    shapes = f"{effect.name}.{p.shapes}" if p.shapes else ""
+    return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit, p.role, shapes)
 
 
 def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
@@ -136,6 +138,20 @@ def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
         if c.is_size:
             found.setdefault((c.unit, c.neutral, c.low, c.high), []).append(c)
     return [tuple(own) for own in found.values()]
+
+
+def by_kind(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
+    """The sizes of each kind with the shapes that act beside them, in the order of the effect."""
+    found = []
+    for kind in kinds(effect):
+        names = {"", *(c.name for c in kind)}
+        found.append(tuple(c for c in effect if c in kind or (not c.is_size and c.shapes in names)))
+    return found
+
+
+def forms(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
+    """The forms of an effect, of which a machine has one: a play is before the sensor or before the load."""
+    return by_kind(effect) if any(c.shapes for c in effect) else [effect]
 
 
 def starts(effect: tuple[Coordinate, ...]) -> list[Array]:

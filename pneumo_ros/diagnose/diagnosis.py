@@ -119,8 +119,11 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
     assert step.added is not None
     name, std = step.added.name, std | step.added.std
     sizes = {c.name: c.unit for c in coordinates(model.library.find(name)) if c.is_size}
-    values = {}
-    for key, parameter in model.library.find(name).parameters.items():
+    values, effect = {}, model.library.find(name)
+    idle = effect.idle({key: model[f"{name}.{key}"] for key in effect.parameters})
+    for key, parameter in effect.parameters.items():
+        if key in idle:
+            continue
         dotted = f"{name}.{key}"
         kind = [dotted, *(n for n, unit in sizes.items() if unit == sizes.get(dotted))]
         ruler = RULER * max(abs(model[n]) for n in kind)

@@ -43,7 +43,7 @@ class Evidence:
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
-        self.mass = moving_mass(model)
+        self.mass, self.piston = moving_mass(model), model["piston.mass"]
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
         self.amplification = lru_cache(4)(self._amplification)  # a candidate's is needed several times
 
@@ -66,17 +66,18 @@ class Evidence:
         return len(self.noise)
 
     def noise_of(self, model: Model) -> Array:
-        """Noise (residuals,) with the moving mass of `model`, which amplifies the noise of the position.
+        """Noise (residuals,) with what `model` adds to the moving mass, which amplifies the noise of the position.
 
-        A mass behind a spring is no part of it, but amplifies what is slower than the spring: the noise is never less.
-        States of effects are driven along the measured motion, and may ring with its noise (`amplification`).
+        States of effects are driven along the measured motion: they may ring with its noise, or take it in, as a load
+        behind a play that does not follow it (`amplification`).
         """
-        grown = max(moving_mass(model) / self.mass, 1.0) ** 2
-        rigid = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
-        return np.asarray(rigid * self.amplification(model)[self.family])
+        rigid = without_states(model)
+        grown = ((self.piston + moving_mass(rigid) - rigid["piston.mass"]) / self.mass) ** 2
+        noise = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
+        return np.asarray(noise * self.amplification(model)[self.family])
 
     def _amplification(self, model: Model) -> Array:
-        """Factor (families,) by which the states of effects in `model` amplify the sensors' noise; never less than 1.
+        """Factor (families,) by which the states of effects in `model` amplify the sensors' noise.
 
         Measured on the longest run, to which its noise is added once more; breakaways are no windows.
         """
@@ -85,7 +86,8 @@ class Evidence:
             return np.ones(len(self.names))
         grown, usual = self.change(model, np.stack([model.values, plain.values]))
         ratio = grown / np.maximum(usual, 1e-300)
-        return np.where([name == "breakaway" for name in self.names], 1.0, np.maximum(ratio, 1.0))
+        known = [name != "breakaway" and before > 0.0 for name, before in zip(self.names, usual, strict=True)]
+        return np.where(known, ratio, 1.0)
 
     def change(self, model: Model, parameters: Array) -> Array:
         """Root mean square (variants, families) of the change of residuals [noise] where noise is added once more.
@@ -146,6 +148,7 @@ class RunEvidence:
     def __init__(self, model: Model, run: Run, index: int) -> None:
         check_position(model, run)
         self.run, self.frame = run, frame_of(run, model.chambers)
+        self.piston = model["piston.mass"]  # weight of the momentum in every model: those compared share one scale
         self.families = families(model, self.frame, index)
         self.held = np.append(run.held, run.held[-1])
         along = follow(model, self.frame)[0] if model.self_driven else self.frame.states
@@ -205,7 +208,7 @@ class RunEvidence:
         if isinstance(measured, MeasuredChamber):
             return measured.value(variant.claimed[:, measured.column - 1])
         rows = measured.bump.centres(len(variant.states))
-        mass = model["piston.mass"] + self._see(model, q, variant.states[rows], rows)["added_mass"]
+        mass = self.piston + self._see(model, q, variant.states[rows], rows)["added_mass"]
         return measured.value(mass, variant.claimed[:, 0])
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:

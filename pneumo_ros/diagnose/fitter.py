@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import ITERATIONS, SMALL_SHARE, Fitted, Known, base_fit, fit_base, strain
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile, kinds
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, forms, is_profile, kinds
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaped, uneven, unevenness
 from pneumo_ros.diagnose.hypothesis import (
@@ -106,15 +106,15 @@ class Fitter:
         Only for sizes of different kinds, as a Stribeck curve's exponent and its tail: they replace each other over
         wide ranges, and a fit of both may end in a valley far from the true values. Of kinds that explain as much as
         each other the one is taken that predicts the training recordings best, in windows of `horizon` [s]: equations
-        average over what sets in fast, and predictions show it.
+        average over what sets in fast, and predictions show it. Forms of an effect were fitted each alone.
         """
         own = coordinates(model.library.find(name))
-        if len(kinds(own)) == 1 or is_profile(own):
+        if len(kinds(own)) == 1 or is_profile(own) or len(forms(own)) > 1:
             return model
-        forms = [self._alone(model, own, kind) for kind in kinds(own)]
-        gains = [self.gain(form, model) for form in forms]
+        alone = [self._alone(model, own, kind) for kind in kinds(own)]
+        gains = [self.gain(form, model) for form in alone]
         least = max(0.0, *gains) - AS_MUCH
-        alike = [form for form, gain in zip(forms, gains, strict=True) if gain > least]
+        alike = [form for form, gain in zip(alone, gains, strict=True) if gain > least]
         if len(alike) < 2:
             return alike[0] if alike else model
         return min(alike, key=lambda form: typical_error(windowed(form, self.train.runs, horizon)))

@@ -25,7 +25,7 @@ def judged(
     nothing: Hypothesis,
     first: bool,
 ) -> list[Candidate]:
-    """Refined hypotheses as candidates, with their held-out residuals, best score first.
+    """Refined hypotheses as candidates, with their held-out residuals, best score first; each effect in its best form.
 
     All are compared with `nothing`: base parameters at their best without any candidate, whose residuals `held` has.
     """
@@ -56,7 +56,7 @@ def judged(
                 swing=swing(h, base.evidence.runs[0].sample_time),
             )
         )
-    return by_score(found)
+    return list({one.name: one for one in reversed(by_score(found))}.values())[::-1]
 
 
 def by_score(candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -90,9 +90,9 @@ def size_in(model: Model, name: str) -> float:
 def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
     """Whether all sizes of an effect of the model may be zero: each is within two of its deviations `std` of neutral.
 
-    Sizes of infinite deviation, on which there are no data, say nothing.
+    Sizes of infinite deviation, on which there are no data, or without one, as those of another form, say nothing.
     """
-    fading = [c for c in coordinates(model.library.find(name)) if c.is_size and std[c.name] < np.inf]
+    fading = [c for c in coordinates(model.library.find(name)) if c.is_size and std.get(c.name, np.inf) < np.inf]
     return bool(fading) and all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] for c in fading)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import relief_of, strain
-from pneumo_ros.diagnose.coordinates import Coordinate, starts
+from pneumo_ros.diagnose.coordinates import Coordinate, forms, starts
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -24,6 +24,7 @@ from pneumo_ros.diagnose.hypothesis import (
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
+Form = tuple[str, frozenset[str]]  # an effect's name, and what its shapes belong to, where it has several forms
 
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = (
@@ -58,10 +59,11 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     found = missing(base.model, base.everything.inputs)
     if absent := {name.split("_")[1] for run in base.evidence.runs for name in run.assumed}:
         found = {n: e for n, e in found.items() if not couples(base.everything, e, min(absent))}
-    tasks = [(name, effect, u) for name, effect in found.items() for u in starts(effect)]
+    each = [(name, form) for name, effect in found.items() for form in forms(effect)]
+    tasks = [(name, form, u) for name, form in each for u in starts(form)]
     if strain(base.offset) > STRAINED:
-        tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _one_size(effect)]
-    tasks += [(name, effect, SMALL_STEP * starts(effect)[0]) for name, effect in found.items() if _saturates(effect)]
+        tasks += [(name, form, SMALL_STEP * starts(form)[0]) for name, form in each if _one_size(form)]
+    tasks += [(name, form, SMALL_STEP * starts(form)[0]) for name, form in each if _saturates(form)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
     for _name, effect, u in tasks:
@@ -136,15 +138,16 @@ def _room(effect: tuple[Coordinate, ...], u: Array, sizes: list[int], own: int) 
 
 
 def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
-    """The first of each name, `most` of those that help the gas and as many of those that help the mechanics.
+    """The first of each form of an effect, `most` of those that help the gas and as many that help the mechanics.
 
     Effects missing in one part must not crowd out effects missing in the other.
     """
     gas = np.array([name.startswith("chamber") for name in base.evidence.names])
-    before, found = family_likelihoods(base.evidence, nothing.residual), dict[str, tuple[bool, Hypothesis]]()
+    before, found = family_likelihoods(base.evidence, nothing.residual), dict[Form, tuple[bool, Hypothesis]]()
     for h in ranked:
         gain = family_likelihoods(base.evidence, h.residual) - before
         helps_gas = bool(np.sum(gain[gas]) > np.sum(gain[~gas]))
-        if h.name not in found and sum(other == helps_gas for other, _ in found.values()) < most:
-            found[h.name] = helps_gas, h
+        form = h.name, frozenset(c.shapes for c in h.coordinates)
+        if form not in found and sum(other == helps_gas for other, _ in found.values()) < most:
+            found[form] = helps_gas, h
     return [h for _, h in found.values()]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.candidate import Candidate
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, kinds
+from pneumo_ros.diagnose.coordinates import Coordinate, by_kind, coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
@@ -113,7 +113,7 @@ class SlipFits:
         most_are_poor = self.q == QUANTILES[0]
         tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
         begins = tangents.best if tangents else partial(by_sizes, self.alone, self.found)
-        forms = [(name, own) for name in names for own in kinds(coordinates(self.alone.library.find(name)))]
+        forms = [(name, own) for name in names for own in by_kind(coordinates(self.alone.library.find(name)))]
         with ThreadPoolExecutor(2) as pool:
             begun = list(pool.map(lambda form: begins(*form), forms))
         ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
@@ -130,12 +130,11 @@ class SlipFits:
         return sorted(result, key=self._left)
 
     def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
-        """Fitted from `begin`, with the sizes `own` and all shapes of the effect free."""
+        """Fitted from `begin`, with the parameters `own` of the effect free."""
         prior, effect = friction_priors(self.alone, self.known), coordinates(self.alone.library.find(name))
-        free = [c for c in effect if c in own or not c.is_size]
-        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in free}
+        prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in own}
         refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
-        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in free}
+        fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in own}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
         asked_for = self._share(held) >= SHARE_REMOVED
         loss = self.against(name, {c.name: fitted[c.name] for c in effect}) if asked_for else 0.0
@@ -155,7 +154,7 @@ class SlipFits:
     def _followed(self, c: Slipping, factor: float) -> Slipping:
         """The last improvement among fits that each start at `factor` times the previous size."""
         effect = coordinates(self.alone.library.find(c.name))
-        own = [size for size in effect if size.is_size and size.name in c.std]
+        own = [one for one in effect if one.name in c.std]
         for _ in range(RESIZINGS):
             if self._explains(c):
                 return c

@@ -25,7 +25,7 @@ _NEAR = 0.2  # of the usual size: range in which a tangent is trusted
 def by_sizes(alone: Model, found: Slips, name: str, own: tuple[Coordinate, ...]) -> Begin:
     """The best of some sizes of an effect beside `alone`, then of some shapes, by the median error of some events.
 
-    `own`: its sizes of one kind; the others stay neutral.
+    `own`: its sizes of one kind and their shapes; the other sizes stay neutral.
     """
     effect = coordinates(alone.library.find(name))
     some = np.arange(0, len(found.train_rows), ONE_IN)
@@ -37,7 +37,7 @@ def by_sizes(alone: Model, found: Slips, name: str, own: tuple[Coordinate, ...])
     options = [tried(_values(effect, own, share)) for share in _SIZES]
     best = min(options, key=lambda option: option[0])[1]
     values = {c.name: best[c.name] for c in effect}
-    options += [tried(values | shape) for shape in _shapes(effect)]
+    options += [tried(values | shape) for shape in _shapes(own)]
     return min(options, key=lambda option: option[0])
 
 
@@ -61,10 +61,10 @@ class Tangents:
     def best(self, name: str, own: tuple[Coordinate, ...]) -> Begin:
         """The effect along its best tangent, and minus the loss that a step along it would save.
 
-        `own`: its sizes of one kind; the others stay neutral.
+        `own`: its sizes of one kind and their shapes; the other sizes stay neutral.
         """
         effect = coordinates(self.alone.library.find(name))
-        options = [self._along(name, own, _values(effect, own, 0.0) | shape) for shape in ({}, *_shapes(effect))]
+        options = [self._along(name, own, _values(effect, own, 0.0) | shape) for shape in ({}, *_shapes(own))]
         return min(options, key=lambda option: option[0])
 
     def _along(self, name: str, own: tuple[Coordinate, ...], values: dict[str, float]) -> Begin:
@@ -72,7 +72,7 @@ class Tangents:
         segments = self.found.train(model)
         states = segments.seated(model)
         states[:, [model.states.index(s) for s in self.alone.states]] = self.states
-        prior = self.friction | {c.name: _NEAR * abs(c.scale) for c in own}
+        prior = self.friction | {c.name: _NEAR * abs(c.scale) for c in own if c.is_size}
         problem = Problem(model, unknowns_of(model, tuple(prior), prior), segments, threads=1)
         begin = problem.unknowns.begin
         residuals = problem.residuals(states, begin)
@@ -93,4 +93,4 @@ def _shapes(effect: tuple[Coordinate, ...]) -> Iterator[dict[str, float]]:
 def _values(effect: tuple[Coordinate, ...], own: tuple[Coordinate, ...], share: float) -> dict[str, float]:
     """Parameters of an effect in its usual shape: its sizes `own` at a share of the usual size, the others neutral."""
     values = {c.name: c.value(0.0) if c.neutral is None else c.neutral for c in effect}
-    return values | {c.name: c.grown(c.typical, share) for c in own} if share else values
+    return values | {c.name: c.grown(c.typical, share) for c in own if c.is_size} if share else values

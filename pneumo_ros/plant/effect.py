@@ -21,7 +21,7 @@ import inspect
 import math
 import re
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -36,7 +36,7 @@ __all__ = [
 ]  # fmt: skip
 
 
-ROLES = ("", "delay", "damping")  # of a parameter, where its unit and neutral value do not say what it does
+ROLES = ("", "delay", "damping", "play")  # of a parameter, where its unit and neutral value do not say what it does
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,12 @@ class Parameter:
     """A physical constant of an effect: `default` value in `unit`, `meaning`, and the allowed values, `low` to `high`.
 
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
-    time by which a signal is late, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
-    role. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral. `chosen`:
-    whoever builds or wires the machine chooses it, so that fits leave it alone.
+    time by which a signal is late, "damping" for the damping ratio of a lag, "play" for the width of a play before a
+    load, and "" otherwise; UsageError for another role. `usual`: the usual size, where the default is neutral.
+    `shapes`: the key of the parameter of the same effect without which this one does nothing; an effect with such a
+    parameter has several forms, one for each of its sizes, and a machine has one of them. `optional`: whether a machine
+    file may leave the parameter out, as one may whose default is neutral. `chosen`: whoever builds or wires the machine
+    chooses it, so that fits leave it alone.
     """
 
     default: float
@@ -58,6 +61,8 @@ class Parameter:
     role: str = ""
     optional: bool = False
     chosen: bool = False
+    usual: float | None = None
+    shapes: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "optional", self.optional or self.default == self.neutral)
@@ -148,6 +153,22 @@ class Effect:
                 f"effect {cls.__name__} has no docstring; say what it is and where the equation comes from"
             )
         cls._check_states()
+        wrong = [key for key, p in cls.parameters.items() if p.shapes and p.shapes not in cls.parameters]
+        if wrong:
+            raise UsageError(f"parameter {wrong[0]} of effect {cls.__name__} shapes none of its other parameters")
+
+    @classmethod
+    def idle(cls, values: Mapping[str, float]) -> set[str]:
+        """Keys of the parameters that do nothing at these values, by key: their form of the effect is not this one.
+
+        What shapes a neutral size; and the sizes of other forms that are neutral, where one acts.
+        """
+        shaped = {key: p.shapes for key, p in cls.parameters.items() if p.shapes}
+        if not shaped:
+            return set()
+        off = {key for key, p in cls.parameters.items() if p.neutral is not None and values[key] == p.neutral}
+        sizes = {key for key, p in cls.parameters.items() if p.neutral is not None}
+        return {key for key, size in shaped.items() if size in off} | (off if off != sizes else set())
 
     @classmethod
     def _check_states(cls) -> None:

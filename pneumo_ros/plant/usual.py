@@ -10,10 +10,12 @@ RANGE_SHARE = 0.1  # of the allowed range: the usual size where no default gives
 def usual_size(effect: type[Effect], key: str) -> float:
     """Usual distance of a parameter of `effect` from its neutral value (from 0, if it has none), in its unit.
 
-    The distance of its default; where that is 0, the largest of the effect's parameters in the same unit, or a tenth
-    of the allowed range (1 if that is infinite). Always above 0.
+    The stated one, or the distance of its default; where that is 0, the largest of the effect's parameters in the same
+    unit, or a tenth of the allowed range (1 if that is infinite). Always above 0.
     """
     own = effect.parameters[key]
+    if own.usual is not None:
+        return abs(own.usual - (own.neutral or 0.0))
     size = abs(own.default - (own.neutral or 0.0))
     if size > 0.0:
         return size

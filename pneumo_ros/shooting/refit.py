@@ -14,6 +14,7 @@ import numpy as np
 from pneumo_ros.blas import on_one_thread
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.effect import Effect
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.approach import approach
@@ -36,15 +37,21 @@ FIXED = ("air.supply_pressure", "lugre_friction.bristle_damping", "lugre_frictio
 def default_free(model: Model) -> tuple[str, ...]:
     """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows.
 
-    What whoever built the machine chose is not free either. What the machine file states to be uncertain is free, too.
+    What whoever built the machine chose is not free either, nor what does nothing in the form that an effect has. What
+    the machine file states to be uncertain is free, too.
     """
+    idle = {f"{one.name}.{key}" for one in model.composition.effects for key in one.idle(_values(model, one))}
     fitted = [name for name in model.effects if name not in FIXED_EFFECTS]
     return tuple(
         name
         for name in model.parameters
         if name in model.uncertainty
-        or (name.partition(".")[0] in fitted and name not in FIXED and not model.specification(name).chosen)
+        or (name.partition(".")[0] in fitted and name not in (*FIXED, *idle) and not model.specification(name).chosen)
     )
+
+
+def _values(model: Model, effect: type[Effect]) -> dict[str, float]:
+    return {key: model[f"{effect.name}.{key}"] for key in effect.parameters}
 
 
 def refit(

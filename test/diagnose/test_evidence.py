@@ -73,6 +73,28 @@ def test_a_payload_amplifies_the_noise_of_the_position() -> None:
     assert np.median(grown[evidence.family == evidence.names.index("momentum 40 ms")]) > 1.9
 
 
+def test_models_of_any_piston_weigh_the_momentum_alike() -> None:
+    """A fit steps through parameters of one model, then goes on from the new one: the residual must not change."""
+    model, _, run = own("sweep")
+    evidence = Evidence(model, [run])
+    heavy = model.with_parameters({"piston.mass": 1.3 * model["piston.mass"]})
+    stepped, alone = evidence.residuals(model, heavy.values[None])[0], evidence.residual(heavy)
+    assert stepped == pytest.approx(alone, rel=1e-9, abs=1e-9)
+    assert evidence.noise_of(heavy) == pytest.approx(evidence.noise_of(model))
+
+
+def test_a_load_that_takes_the_noise_in_is_judged_by_less_of_it() -> None:
+    """Behind a wide play half of the mass does not follow the noise of the position: the rest amplifies less."""
+    model, _, run = own("sweep")
+    evidence, name = Evidence(model, [run]), "backlash"
+    values = {f"{name}.gap": 0.0, f"{name}.load_share": 0.5, f"{name}.load_gap": 1e-2}
+    factor = dict(
+        zip(evidence.names, evidence.amplification(model.with_effects([*model.effects, name], values)), strict=True)
+    )
+    assert 0.5 < factor["momentum 40 ms"] < 0.85
+    assert all(value == pytest.approx(1.0) for key, value in factor.items() if not key.startswith("momentum"))
+
+
 def test_a_load_that_rings_with_the_noise_of_the_position_has_more_of_it() -> None:
     """It once passed for a contradiction of 1260 nats to the load that had been found at breakaways."""
     model, _, run = own("sweep")

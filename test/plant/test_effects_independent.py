@@ -136,6 +136,17 @@ def test_loose_encoders_show_the_same() -> None:
     assert shown == pytest.approx(sensors._loose(machine, reading[:, 0])[1:], abs=1e-5)
 
 
+@pytest.mark.parametrize("half", [2e-4, 5e-4])
+def test_a_load_behind_a_play_moves_the_piston_alike(half: float) -> None:
+    """The rig's faces are stiffer and let the load rebound; what the play does is nearer than nothing."""
+    loose = {"load_share": 0.5, "coupling": 5e5, "coupling_damping": 300.0, "coupling_gap": half}
+    _, reading = theirs(loose)
+    begin = reading[0]
+    with_play = run(ours("backlash", {"gap": 0.0, "load_share": 0.5, "load_gap": 2.0 * half}), begin)
+    apart = [np.sqrt(((x[:, 1] - reading[1:, 1]) ** 2).mean()) for x in (with_play, run(AXIS, begin))]
+    assert apart[0] < 0.75 * apart[1], apart
+
+
 def test_wall_heat_of_another_law_is_met_by_one_time_constant() -> None:
     """The rig's film coefficient grows with pressure, ours takes one rate: nearer than no exchange by a factor."""
     _, reading = theirs({"wall_time": 0.2})

@@ -6,6 +6,7 @@ from plant.catalogue import AXIS, in_python, lone_machine, machine
 from plant.driven import along
 
 from pneumo_ros.plant import Library, Model
+from pneumo_ros.shooting.refit import default_free
 
 OFFSET, STIFFNESS = 0.2, 250.0
 
@@ -119,6 +120,34 @@ def test_backlash_waits_for_half_the_play_and_at_reversals_for_all_of_it() -> No
     assert shown[after] == pytest.approx(np.full(after.sum(), 1e-3 - 0.5 * gap), abs=1e-7)
     falling = slice(900, 1500)
     assert shown[falling] == pytest.approx(y[falling] + 0.5 * gap, abs=1e-7)
+
+
+def test_load_flies_through_its_play_and_takes_the_piston_along() -> None:
+    """Without friction and gas: v_l is constant until the face, the momentum always; no face lets the load rebound."""
+    share, gap, speed = 0.4, 1e-3, 0.1
+    values = {"backlash.gap": 0.0, "backlash.load_share": share, "backlash.load_gap": gap}
+    model = in_python(Model.build(["backlash"], values, library=Library(), frame=("piston",), defaults=True))
+    x = model.simulate(np.zeros(2000), model.state(v_loose=speed), sample_time=1e-4)
+    v, ahead, loose = (x[:, model.states.index(name)] for name in ("v", "ahead", "v_loose"))
+    assert (1.0 - share) * v + share * loose == pytest.approx(np.full(len(x), share * speed), rel=1e-3)
+    flight = int(np.argmax(ahead > 0.4 * gap))
+    assert loose[:flight] == pytest.approx(np.full(flight, speed), rel=0.05)
+    assert flight * 1e-4 * speed == pytest.approx(0.4 * gap, rel=0.05)
+    assert ahead.max() < gap
+    assert np.abs(loose - v)[-100:].max() < 0.15 * speed
+
+
+def test_a_fit_of_one_form_of_a_play_leaves_the_other_alone() -> None:
+    """Neither a load that hangs on nothing, nor the width of a play that no load has."""
+
+    def free(**values: float) -> set[str]:
+        model = machine("backlash").with_parameters({f"backlash.{key}": value for key, value in values.items()})
+        return {name.partition(".")[2] for name in default_free(model) if name.startswith("backlash.")}
+
+    assert free(gap=2e-4) == {"gap"}
+    assert free(gap=0.0, load_share=0.3) == {"load_share", "load_gap"}
+    assert free(gap=2e-4, load_share=0.3) == {"gap", "load_share", "load_gap"}
+    assert free(gap=0.0) == {"gap", "load_share"}
 
 
 @pytest.mark.parametrize("delay", [5e-4, 2e-3, 5e-3, 2e-2])
