@@ -239,7 +239,8 @@ class Desk:
 
     def _compared(self, plan: Plan, name: str) -> Compared:
         stem = self.folder / name
-        return Compared(plan.bags, *(stem.with_suffix(kind) for kind in (".json", ".npz", ".html")))
+        numbers, series, report = (stem.with_suffix(kind) for kind in (".json", ".npz", ".html"))
+        return Compared(plan.bags, numbers, series, report, plan.line_of(name))
 
     def say(self, problem: PneumoError | str) -> None:
         """A sentence for the page; the next change removes it."""

@@ -60,6 +60,11 @@ class Plan:
         """The command lines, to be typed."""
         return tuple(shlex.join(["pneumo", *line.arguments]) for line in self.lines)
 
+    def line_of(self, stem: str) -> str:
+        """The command line, to be typed, that writes the comparison `stem`."""
+        pairs = zip(self.lines, self.shown(), strict=True)
+        return next((shown for line, shown in pairs if f"{stem}.json" in line.arguments), "")
+
 
 def live_options(how: ReadOptions, rig: str) -> list[str]:
     """How the rig is wired, for verbs that move it: its file, or the words with which its recordings are read."""

@@ -1,5 +1,6 @@
 """Results to save: the machine file, the report, and the command lines that make them."""
 
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,19 @@ def register(panels: Panels) -> None:
     panels.show([Output("files", "children"), Output("commands", "children")], [revision()], render)
 
 
+def machine_path(desk: Desk) -> Path:
+    """The file of the current machine: of the desk, as it was given, or shipped with the package."""
+    machine = place_of(desk.variant.machine)[0]
+    own = desk.folder / machine
+    return own if own.is_file() else Path(str(files("pneumo_ros.config") / f"{machine}.yaml"))
+
+
 def saved_files(desk: Desk) -> dict[str, tuple[str, Path]]:
     """Name for the browser -> (description, path), of the current machine."""
     variant, found = desk.variant, dict[str, tuple[str, Path]]()
-    machine = Path(place_of(variant.machine)[0])
-    if (desk.folder / machine).is_file():
-        found[machine.name] = ("machine file", desk.folder / machine)
+    machine = machine_path(desk)
+    if machine.is_file():
+        found[machine.name] = ("machine file", machine)
     stem = machine.stem
     if variant.report and variant.report.is_file():
         found[f"{stem}_report.html"] = ("report of what made it", variant.report)
@@ -55,11 +63,11 @@ def render(desk: Desk, _revision: int) -> tuple[Any, str]:
         html.A(f"Save the {what}: {name}", href=f"/files/{desk.folder.name}/{name}", download=name, className="button")
         for name, (what, _) in saved_files(desk).items()
     ]
-    lines = (
-        "\n".join([*desk.imported, *filter(None, [commands(desk.lineage())])])
-        or f"# {desk.variant.machine} as it was given"
-    )
-    return links or html.P("There are no files yet: press Compare.", className="soft"), lines
+    lines = [*desk.imported, *commands(desk.lineage()).splitlines()]
+    if desk.variant.compared and desk.variant.compared.line not in lines:  # it was compared after it was made
+        lines.append(desk.variant.compared.line)
+    text = "\n".join(filter(None, lines)) or f"# {desk.variant.machine} as it was given"
+    return links or html.P("There are no files yet: press Compare.", className="soft"), text
 
 
 def serve_files(server: Flask, desks: Desks) -> None:

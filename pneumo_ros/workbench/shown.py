@@ -11,4 +11,5 @@ def content(target: str, sections: Sequence[Section], stamp: object) -> dict[str
     """Sections for the element `target`: escaped markup and charts by name. `stamp` differs between contents."""
     found = Report("", "", True, tuple(sections), {}).charts()
     charts = {chart.name: chart_json(chart) for chart in found if isinstance(chart, Chart)}
-    return {"target": target, "html": "".join(section_html(s) for s in sections), "charts": charts, "stamp": stamp}
+    html = "".join(section_html(section, stills=True) for section in sections)  # the drawings are for paper
+    return {"target": target, "html": html, "charts": charts, "stamp": stamp}

@@ -28,24 +28,30 @@ def layout() -> html.Div:
     sets = dcc.RadioItems(["A", "B"], "A", id="cursor", inline=True)
     return html.Div(
         [
-            html.Div(choice("Show", shown), className="row"),
-            html.Div(
+            html.Details(
                 [
-                    drop_down("Also", "also", placeholder="no other run", multi=True),
-                    drop_down("Topics", "topics", placeholder="any other number", multi=True),
-                    drop_down("Over", "over", placeholder="time"),
+                    html.Summary("Signals, other runs, regimes and cuts"),
+                    html.Div(choice("Show", shown), className="row"),
+                    html.Div(
+                        [
+                            drop_down("Also", "also", placeholder="no other run", multi=True),
+                            drop_down("Topics", "topics", placeholder="any other number", multi=True),
+                            drop_down("Over", "over", placeholder="time"),
+                        ],
+                        className="row",
+                    ),
+                    html.Div(
+                        [
+                            drop_down("Shade", "regime", placeholder="no regime"),
+                            drop_down("Beside", "other", placeholder="no other variant"),
+                            button("Whole run", "whole"),
+                            button("Cut what is in view", "cut"),
+                            choice("A click sets", sets),
+                        ],
+                        className="row",
+                    ),
                 ],
-                className="row",
-            ),
-            html.Div(
-                [
-                    drop_down("Shade", "regime", placeholder="no regime"),
-                    drop_down("Beside", "other", placeholder="no other variant"),
-                    button("Whole run", "whole"),
-                    button("Cut what is in view", "cut"),
-                    choice("A click sets", sets),
-                ],
-                className="row",
+                open=True, className="fold",
             ),
             html.P(id="signals-says", className="soft"),
             html.Div(id="signals", role="img", **{"aria-label": "Signals of the run over time"}),

@@ -17,12 +17,16 @@ from pneumo_ros.plant.axes_section import place_of
 
 @dataclass(frozen=True)
 class Compared:
-    """Output of `pneumo compare` for bags, by name, in the order given: its JSON, its series and its report."""
+    """Output of `pneumo compare` for bags, by name, in the order given: its JSON, its series and its report.
+
+    `line` is the command line that wrote them.
+    """
 
     bags: tuple[str, ...]
     json: Path
     series: Path
     report: Path
+    line: str = ""
 
     @property
     def result(self) -> dict[str, Any]:

@@ -95,6 +95,8 @@ def test_the_bar_stays_in_sight_on_a_telephone_and_is_first_for_the_keyboard(bro
     tab = Tab(browser, served.address, NARROW)
     try:
         tab.see("#next", "Next: Compare.")
+        tab.wait_for_traces(bool)
+        assert tab.page.evaluate(IN_SIGHT.format("signals")) < 300.0
         for _ in range(3):  # after Import and Rig
             tab.page.keyboard.press("Tab")
         assert tab.page.evaluate("document.activeElement.id") == "compare"
@@ -110,6 +112,13 @@ def test_the_bar_stays_in_sight_on_a_telephone_and_is_first_for_the_keyboard(bro
         assert tab.page.evaluate(IN_SIGHT.format("panel-failures")) < 700.0
         right = "document.querySelector('#failures-content table.heat caption').getBoundingClientRect().right"
         assert tab.page.evaluate(right) < NARROW  # its table is wider, and scrolls
+        tab.view("Signals")
+        tab.wait_for_traces(lambda found: sum(one["name"] == "measured" for one in found) == 3)
+        tab.page.evaluate("window.scrollTo(0, 0)")
+        assert tab.page.evaluate(IN_SIGHT.format("signals")) < 420.0  # below the verdict, in the upper half
+        tab.page.get_by_text("Signals, other runs, regimes and cuts").click()
+        tab.page.get_by_label("velocity", exact=True).check()
+        tab.wait_for_traces(lambda found: sum(one["name"] == "measured" for one in found) == 4)
         assert tab.complaints == []
     finally:
         tab.close()

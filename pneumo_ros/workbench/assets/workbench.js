@@ -216,6 +216,21 @@ window.dash_clientside.bench = (() => {
     document.querySelectorAll("#effects > div").forEach((room) => { room.hidden = !room.querySelector(".effect:not([hidden])"); });
   });
 
+  // On paper a plot is as wide as the sheet and not higher, whatever the window; afterwards as before.
+  const PAPER = { width: 690, height: 900 }; // px: A4 without its margins, and a little less than its height
+
+  function onPaper(paper) {
+    charts.forEach((chart, div) => {
+      if (!div.isConnected || !div.data) return;
+      const height = chart.height && paper ? Math.min(chart.height, PAPER.height) : chart.height;
+      if (height) div.style.height = `${height}px`;
+      window.Plotly.relayout(div, { ...(paper ? { width: PAPER.width } : { width: null, autosize: true }), ...(height && { height }) });
+    });
+  }
+
+  window.addEventListener("beforeprint", () => onPaper(true));
+  window.addEventListener("afterprint", () => onPaper(false));
+
   // A step of the bar that opens a panel.
   function go() {
     const pressed = window.dash_clientside.callback_context.triggered_id;
@@ -258,9 +273,15 @@ window.dash_clientside.bench = (() => {
     window.dash_clientside.set_props("wanted-run", { data: { number: Number(link.getAttribute("href").slice(5)), at: Date.now() } });
   });
 
+  // Controls above a plot: open on a wide screen; on a telephone behind their summary, so that the plot comes first.
+  const narrow = matchMedia("(max-width: 600px)");
+  const fold = () => document.querySelectorAll("details.fold").forEach((one) => { one.open = !narrow.matches; });
+  narrow.addEventListener("change", fold);
+
   const begin = setInterval(() => {
     if (!window.dash_clientside.set_props || !document.getElementById("tab")) return;
     clearInterval(begin);
+    fold();
     look();
     setInterval(look, 500);
   }, 50);
