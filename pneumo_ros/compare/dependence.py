@@ -64,7 +64,8 @@ def _against(
     name: str, variable: Array, value: Array, noise: Array, cluster: NDArray[np.int64], hop: float
 ) -> Dependence:
     at = edges(variable, BINS)
-    bins = bin_means(variable, value, cluster, at, _FEWEST)
+    fitting = min(max(len(value) // (2 * _FEWEST), 1), BINS)  # 40 bins of a short recording hold too few windows each
+    bins = bin_means(variable, value, cluster, edges(variable, fitting), _FEWEST)
     level = np.array([np.sqrt(np.mean(np.square(noise[inside]))) for inside in bins.members])
     constant, beyond = explained(variable, value, cluster, at)
     return Dependence(name, bins, level, bins.count * hop, constant, beyond)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.wording import EQUATIONS, VARIABLES, amount, percent, times
 from pneumo_ros.report.chart import Chart, Panel, Section, Trace
 from pneumo_ros.report.markup import tag
+from pneumo_ros.wording.naming import listed
 
 Array = NDArray[np.float64]
 
@@ -30,11 +31,14 @@ def _equation(name: str, found: dict[str, Any]) -> Section:
     order = sorted(found["against"], key=lambda variable: -found["against"][variable]["explained_share"])
     constant = max((one["constant_share"] for one in found["against"].values()), default=0.0)
     words = f"{size}. A constant explains {percent(constant)} of the squared residual."
+    drawn = [variable for variable in order if len(found["against"][variable]["at"]) > 1]
+    if empty := [variable for variable in order if variable not in drawn]:
+        words += f" Too few windows for a plot against {listed([VARIABLES[one][0] for one in empty])}."
     return Section(
         f"equation-{name}",
         f"{EQUATIONS[name][0].capitalize()}: {state}",
         tag("p", words if order else f"{size}. Too few windows to look for a dependence."),
-        charts=tuple(dependence_chart(name, variable, found["against"][variable]) for variable in order),
+        charts=tuple(dependence_chart(name, variable, found["against"][variable]) for variable in drawn),
         folded=found["explained_by_noise"] is not False,
         columns=2,
     )

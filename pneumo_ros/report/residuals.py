@@ -46,7 +46,7 @@ def _part(outcome: "Outcome", equation: str) -> Section:
 
 def best(comparison: "Comparison", equation: str) -> list[str]:
     """The variable that explains most of an equation's residual, and the next one if it explains nearly as much."""
-    found = {name: one for name, one in comparison.dependences[equation].items() if len(one.bins.centre)}
+    found = {name: one for name, one in comparison.dependences[equation].items() if len(one.bins.centre) > 1}
     if not found:
         return []
     first, *others = sorted(found, key=lambda name: -found[name].explained_share)

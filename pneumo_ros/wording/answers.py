@@ -74,4 +74,7 @@ def at_the_machine(result: Mapping[str, Any]) -> tuple[str, ...]:
     left = result["unexplained"]
     if result["verdict"] != UNKNOWN or not left:
         return known
-    return (*known, f"At the machine, look at {PLACES[left['equation']]}: no known effect explains what happens there.")
+    why = "no known effect explains what happens there"
+    if result.get("interrupted") or result.get("deadline"):
+        why = "the search was stopped before it could say which effect explains what happens there"
+    return (*known, f"At the machine, look at {PLACES[left['equation']]}: {why}.")

@@ -27,7 +27,7 @@ _PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
         ("pressure_a", "measured", 1e-3),
         ("pressure_b", "noise", 1e-3),
         ("predicted_pressure_a", "model", 1e-3),
-        ("predicted_pressure_b", "first", 1e-3),
+        ("predicted_pressure_b", "second", 1e-3),
     ),
     "voltage [V]": (("voltage", "third", 1.0),),
 }
@@ -54,9 +54,15 @@ def layout() -> html.Div:
     return html.Div(
         [
             html.P(_TEXT, className="soft"),
-            html.Div([place, button("Watch", "watch", main=True), button("Record", "record"), closed,
-                      button("Constant-voltage campaign", "campaign")], className="row"),
-            html.Div(setting, className="row"),
+            html.Div([place, button("Watch", "watch", main=True), button("Record", "record")], className="row"),
+            html.Details(
+                [
+                    html.Summary("A campaign, a parameter"),
+                    html.Div([closed, button("Constant-voltage campaign", "campaign")], className="row"),
+                    html.Div(setting, className="row"),
+                ],
+                open=True, className="fold",
+            ),
             html.P("", id="live-says", role="status"),
             html.Div(id="live-plot", role="img", **{"aria-label": "The axis over the last 20 s"}),
             html.Div(id="live-status"),
@@ -192,7 +198,7 @@ def _status(live: Live) -> Html:
     signs = ("good", "warning", "bad")
     rows = []
     for name, one in sorted(live.status.items()):
-        values = ", ".join(f"{key} {value}" for key, value in one["values"].items())
+        values = ", ".join(f"{key} {value}" for key, value in one["values"].items() if str(value).strip())
         more = tag("ul", tag("li", values)) if values else ""
         rows.append(tag("li", tag("b", f"{name}: {one['message']}"), more, class_=signs[min(one["level"], 2)]))
     return Html(tag("h2", "Diagnostics") + tag("ul", rows, class_="findings")) if rows else Html()

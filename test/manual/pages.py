@@ -10,6 +10,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").g
 SHELLS = ("sh", "shell", "bash", "console")
 _BLOCK = re.compile(r"^```([\w{}-]*)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
+_WORDED = re.compile(r"(?<!!)\[([^\]]+)\]\(([^)\s]+)\)")
 _INLINE = re.compile(r"`((?:pneumo [a-z]|make [a-z]|python [a-z])[^`]*)`")
 
 
@@ -87,6 +88,12 @@ def inline(page: Path) -> list[str]:
 def links(page: Path) -> list[str]:
     """Where a page's links and pictures lead, without the blocks."""
     return _LINK.findall(_BLOCK.sub("", page.read_text(encoding="utf-8")))
+
+
+def worded_links(page: Path) -> list[tuple[str, str]]:
+    """The text of each link and where it leads, without pictures and blocks."""
+    found = _WORDED.findall(_BLOCK.sub("", page.read_text(encoding="utf-8")))
+    return [(" ".join(text.split()), target) for text, target in found]
 
 
 def words(line: str) -> list[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 from manual.beside import ANSWERS, BESIDE
-from manual.pages import PAGES, ROOT, blocks, heading_names, inline, links, statements, words
+from manual.pages import PAGES, ROOT, blocks, heading_names, inline, links, statements, worded_links, words
 from manual.unrun import ELSEWHERE, MORE, SERVING, UNRUN, UNRUN_CODE
 
 from pneumo_ros.command.main import VERBS, _verb, verb_parser
@@ -56,6 +56,16 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
         target = page.parent / path if path else page
         assert target.exists(), link
         assert not heading or heading in heading_names(target), link
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_text_of_a_link_says_where_it_leads(page: Path) -> None:
+    """Read alone, as a list of links is: more than a word such as "here", and one text for one place."""
+    places = dict[str, str]()
+    for text, target in worded_links(page):
+        assert len(text.strip("`")) > 3, text
+        assert text.lower() not in ("here", "this", "this page", "more", "page", "figures", "docs", "link"), text
+        assert places.setdefault(text.lower(), target) == target, text
 
 
 def test_there_is_much_to_follow() -> None:

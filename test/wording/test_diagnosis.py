@@ -123,3 +123,13 @@ def test_nothing_in_the_panel_becomes_markup(verdict: str) -> None:
     assert "<script" not in markup
     assert EXPERIMENT not in markup  # it holds markup
     assert "&lt;slowly&gt;" in markup
+
+
+@pytest.mark.parametrize("stop", ["interrupted", "deadline"])
+def test_a_search_that_was_stopped_does_not_say_that_no_known_effect_explains_the_rest(stop: str) -> None:
+    """Whether one does was not found out."""
+    result = json_of(diagnosed("unknown_effect"))
+    assert any("no known effect explains" in one for one in diagnosis(result).doing)
+    stopped = diagnosis(result | {stop: True}).doing
+    assert not any("no known effect explains" in one for one in stopped)
+    assert any("the search was stopped" in one for one in stopped)

@@ -65,6 +65,9 @@ def test_a_live_axis_is_watched_set_and_recorded(live: Tab) -> None:
     live.see("#live-status", "cylinder/simulator: ")
     live.see("#live-says", "Over the last second the model was off by: position ")
     assert {"predicted position", "predicted pressure a"} <= set(live.page.locator("#live-plot").evaluate(names))
+    colours = "one => one._fullData.filter(t => t.name.includes('pressure')).map(t => t.line.color + t.line.dash)"
+    assert len(set(live.page.locator("#live-plot").evaluate(colours))) == 4, "two pressures, measured and predicted"
+    assert " ," not in live.see("#live-status", "cylinder/controller: ").inner_text(), "a value that is empty"
     live.press("Record")
     set_parameter(live, "-5")
     live.see("#set-says", "Refused: ")
