@@ -42,7 +42,7 @@ def idle_notes(model: Model, run: Run) -> list[str]:
     known = {name: signal for name, signal in run.signals.items() if name not in run.assumed}
     hung = {name: found for name, signal in known.items() if (found := _hung(run, signal))}
     notes = [
-        f"{_TOPICS[name]} repeats {run.signals[name][start]:.6g} {_UNITS[name]} without any noise "
+        f"{_TOPICS[name]} repeats {run.signals[name][start]:.6g} {shown(_UNITS[name])} without any noise "
         f"{_span(run, start, stop)}: its sensor or driver hung; leave this part out, or expect errors there"
         for name, (start, stop) in hung.items()
     ]

@@ -18,6 +18,7 @@ from pneumo_ros.plant import Model
 from pneumo_ros.reading.idle import idle_notes
 from pneumo_ros.reading.motion import check_sealed, imposed_note
 from pneumo_ros.runs.run import Run
+from pneumo_ros.units import shown
 
 _GAIN = 2.5  # times smaller residuals, geometric mean over the equations, that prove a mistake
 _GROWS = 1.5  # times larger residuals of a chamber disprove it: the cause is hidden friction or a closed valve
@@ -226,7 +227,7 @@ def _reversed(further: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[n
 def _sizes(residuals: dict[str, float]) -> str:
     """Residuals in words."""
     return ", ".join(
-        f"{factor * rms:.2g} {unit} ({name.replace('_', ' ')})"
+        f"{factor * rms:.2g} {shown(unit)} ({name.replace('_', ' ')})"
         for name, rms in residuals.items()
         for unit, factor in [_MOMENTUM if name == "momentum" else _FLOW]
     )

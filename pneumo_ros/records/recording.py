@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.environment import require_libraries
+from pneumo_ros.units import KEY, LINE, TURN
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -106,6 +107,13 @@ def with_imposed(description: dict[str, Any] | None) -> dict[str, Any]:
     """The description of a recording with a map that says `motion: imposed`."""
     plan = (description or {}).get("map")
     return {**(description or {}), "map": {**(plan if isinstance(plan, dict) else {}), "motion": "imposed"}}
+
+
+def coordinate(description: dict[str, Any] | None) -> str:
+    """The coordinate of the machine, or of the imported table, of a description; along a line where it says nothing."""
+    machine, units = ((description or {}).get(name) for name in ("model", "units"))
+    turns = isinstance(machine, dict) and machine.get(KEY) == TURN
+    return TURN if turns or (isinstance(units, dict) and units.get("position") == "rad") else LINE
 
 
 def imposed(description: dict[str, Any] | None) -> bool:

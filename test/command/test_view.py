@@ -26,6 +26,18 @@ def test_every_signal_has_its_range_and_its_course(tmp_path: Path, capsys: pytes
     assert max(map(len, out.splitlines())) <= 80
 
 
+def test_a_machine_that_turns_is_shown_in_its_units(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The recording of a simulation says so by its machine, that of a table by its units."""
+    one = pn.simulate("vane", "sine:3,1", seconds=1)
+    for name, told in (("machine", one.description), ("table", {"units": {"position": "rad"}})):
+        pn.save(replace(one, description=told), tmp_path / name)
+        assert main(["view", str(tmp_path / name)]) == 0
+        out = capsys.readouterr().out
+        assert " mrad " in out
+        assert " rad/s " in out
+        assert max(map(len, out.splitlines())) <= 80
+
+
 def test_what_cannot_be_read_is_passed_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     record(tmp_path / "good", "steps")
     (tmp_path / "bad.mcap").write_bytes(b"nothing")

@@ -98,6 +98,7 @@ def test_ros_reads_the_same_doubles(tmp_path: Path, name: str) -> None:
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout.splitlines()[-1])
     assert found.pop("effects") == ["STRING_ARRAY", list(model.effects) or [""]]
+    assert found.pop("coordinate", ["STRING", "translation"]) == ["STRING", model.coordinate]
     assert found == {key: ["DOUBLE", value] for key, value in model.parameters.items()}
 
 

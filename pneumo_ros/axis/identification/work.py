@@ -21,6 +21,7 @@ from pneumo_ros.reading.read import ReadOptions, read_runs
 from pneumo_ros.runs.inputs import check_driven, judged, measuring
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import refit
+from pneumo_ros.units import write_in
 
 NICE = 5  # control loops come first
 PARTS = (0.0, 0.2, 1.0)  # of the progress: reading, identifying
@@ -69,6 +70,7 @@ def work(job: dict[str, Any], report: Report) -> dict[str, Any]:
     begun = time.monotonic()
     parts = PARTS_WITH_REFIT if job["whole_model"] else PARTS
     model = model_from_dict(job["machine"], job["name"], Library(job["files"]))
+    write_in(model.coordinate)
     runs, refused = read(job, model, report, report.part(*parts[0:2]))
     given, model = model, measuring(model, runs)
     check_driven(model, runs)

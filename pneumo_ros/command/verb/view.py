@@ -17,6 +17,7 @@ from pneumo_ros.command.recordings import expanded, read_options
 from pneumo_ros.environment import require_libraries
 from pneumo_ros.errors import DataError
 from pneumo_ros.measured import MEASURED
+from pneumo_ros.units import LINE, unit_along
 
 if TYPE_CHECKING:
     import numpy as np
@@ -106,6 +107,8 @@ def text(recording: "Recording") -> str:
     from rich.console import Console as Rich
     from rich.table import Table
 
+    from pneumo_ros.records.recording import coordinate
+
     columns = shutil.get_terminal_size().columns
     rate = f"{len(recording)} samples at {1.0 / recording.sample_time:.0f} Hz"
     head = f"{recording.name}: {recording.duration:.1f} s, {rate}"
@@ -113,12 +116,14 @@ def text(recording: "Recording") -> str:
     table = Table(title=head + place, title_justify="left", title_style="bold")
     for name in ("signal", "lowest", "mean", "highest"):
         table.add_column(name, justify="left" if name == "signal" else "right", no_wrap=True)
-    width = min(max(columns - 56, 10), WIDE)
+    moves = coordinate(recording.description)
+    width = min(max(columns - (56 if moves == LINE else 66), 10), WIDE)  # rad/s and mrad are longer
     table.add_column(f"0 to {recording.duration:.1f} s", no_wrap=True)
     for name, (words, unit, factor) in SHOWN.items():
         values = recording.signals.get(name)
         if values is not None:
-            numbers = (f"{factor * pick(values):.4g} {unit}" for pick in (np.nanmin, np.nanmean, np.nanmax))
+            own, picks = unit_along(unit, moves), (np.nanmin, np.nanmean, np.nanmax)
+            numbers = (f"{factor * pick(values):.4g} {own}" for pick in picks)
             table.add_row(words, *numbers, sparkline(recording.time, values, width))
     stream = io.StringIO()
     rich = Rich(file=stream, width=columns, force_terminal=sys.stdout.isatty(), highlight=False)
