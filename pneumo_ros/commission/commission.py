@@ -12,6 +12,7 @@ from pneumo_ros.commission.performing import Perform, Performed
 from pneumo_ros.commission.safe import LIMIT, again, agreeing, may_be_tried_again, safe, unmoved
 from pneumo_ros.commission.settling import settled
 from pneumo_ros.commission.simulated import SimulatedRig
+from pneumo_ros.commission.slips import surely_static
 from pneumo_ros.commission.wiring import MOVED, UnmovedError, Wired, as_run, find_wiring
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.errors import DataError, NumericalError, UsageError
@@ -282,6 +283,7 @@ class Commissioning:
         try:
             done = rig.perform(programme, (), "predicted")
             evidence = Evidence(self.model, [as_run(recording, model, ()) for recording in done.recordings])
+            evidence = surely_static(evidence, model)
             return told(evidence, model, self.known.known, self.known.told.scales), done.seconds
         except (DataError, NumericalError, ValueError):
             return None

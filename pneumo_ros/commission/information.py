@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.commission.slips import surely_static
 from pneumo_ros.diagnose.basefit import Known, slopes, strain
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import UNSEEN, Fitter
@@ -63,7 +64,7 @@ class Told:
 def told(evidence: Evidence, model: Model, known: Known, scales: dict[str, float] | None = None) -> Told:
     """What `evidence` tells about `known` at `model`; `scales`: of a trial that is simulated, those of real ones."""
     residual, slope = slopes(evidence, model, known)
-    scale = family_scales(evidence, residual)
+    scale = np.maximum(family_scales(evidence, residual), 1.0)  # what breakaways share does not scatter
     if scales is not None:
         scale = np.array([scales.get(name, one) for name, one in zip(evidence.names, scale, strict=True)])
         residual = residual * scale[evidence.family]
@@ -109,8 +110,12 @@ def knowledge(model: Model, runs: Sequence[Run], before: Model | None = None) ->
         return Knowledge(model, Known((), empty, empty, empty), nothing, estimates)
     together = on_one_clock(runs)
     fitter = Fitter(model, together, candidates=())
-    known = fitter.known(model)
+    known, every = fitter.known(model), fitter.train
+    fitter.train = surely_static(every, before or model)
     found = _fitted(fitter, known, together, before)
+    if before is None:  # which breakaways count, the data sheet says badly
+        fitter.train = surely_static(every, _presliding(found, together)[0])
+        found = fitter.refit(found)
     what = told(fitter.train, found, known)
     deviations = dict(zip(known.names, (what.deviations() * known.prior).tolist(), strict=True))
     found, seen = _presliding(found, together)

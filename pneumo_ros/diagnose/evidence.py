@@ -8,6 +8,7 @@ The equations are those of `equations.equations`; each residual has its noise fr
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
 
@@ -64,6 +65,13 @@ class Evidence:
 
     def __len__(self) -> int:
         return len(self.noise)
+
+    def with_breakaways(self, noise: Sequence[Array]) -> "Evidence":
+        """The same with another noise of the breakaways (breakaways,) [N] of each run; infinite: it does not count."""
+        other = copy(self)
+        other._index([part.with_breakaways(own) for part, own in zip(self.by_run, noise, strict=True)])
+        other.amplification = lru_cache(4)(other._amplification)
+        return other
 
     def noise_of(self, model: Model) -> Array:
         """Noise (residuals,) with what `model` adds to the moving mass, which amplifies the noise of the position.
@@ -170,6 +178,12 @@ class RunEvidence:
         rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, ends, strict=True)]
         self.rested = np.array(rested, dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
+
+    def with_breakaways(self, noise: Array) -> "RunEvidence":
+        """The same with another noise of the breakaways (breakaways,) [N]; infinite: it does not count."""
+        other = copy(self)
+        other.families = [*self.families[:-1], replace(self.families[-1], noise=noise, usable=np.isfinite(noise))]
+        return other
 
     @cached_property
     def noisier(self) -> Frame:

@@ -13,6 +13,8 @@ from pneumo_ros.shooting.slopes import LANES, start_slopes
 Array = NDArray[np.float64]
 
 NOISE_TAIL = 4.0  # noise deviations: beyond, the loss of an error is linear
+_PROBE, _LEAST = 1e-2, 1e-2  # of the prior, a step; of the centre, the least value that steps are shares of
+_FINE, _COARSE = 0.01, 0.1  # of a value, largest step; where valves open and close, the cost has stairs
 _BENT = 5e-3  # share of the cost beyond noise: least gain for a further step of a model that lacks an effect
 
 
@@ -27,10 +29,24 @@ class Unknowns:
     low: Array
     high: Array
 
-    def steps(self, theta: Array) -> Array:
-        """Finite-difference steps: a hundredth of the prior, away from a bound and never across the other."""
-        steps = np.minimum(1e-2 * self.prior, 0.5 * (self.high - self.low))
+    def steps(self, theta: Array, most: float) -> Array:
+        """Finite-difference steps: a hundredth of the prior, away from a bound and never across the other.
+
+        At most a share `most` of the value, taken as a hundredth of the centre at least; a prior may be many times as
+        wide as the value. Where the centre is 0, the prior alone says what is a small step.
+        """
+        size = np.maximum(np.abs(theta), _LEAST * np.abs(self.centre))
+        steps = np.minimum(_PROBE * self.prior, np.where(self.centre != 0.0, most * size, np.inf))
+        steps = np.minimum(steps, 0.5 * (self.high - self.low))
         return np.where(theta + steps > self.high, -steps, steps)
+
+
+def largest_step(model: Model) -> float:
+    """Share of its value by which a parameter is moved at most for a slope: a tenth for valves that open and close.
+
+    There the cost has stairs; elsewhere so long a step would mix slopes of both sides of a Stribeck curve.
+    """
+    return _COARSE if model.composition.jumping else _FINE
 
 
 @dataclass(frozen=True)
@@ -100,7 +116,7 @@ class Problem:
 
     def jacobian(self, states: Array, theta: Array) -> Array:
         """Derivatives (segments, states + free, residuals) by starts in scales and by parameters in priors."""
-        steps, (count, n) = self.unknowns.steps(theta), states.shape
+        steps, (count, n) = self.unknowns.steps(theta, largest_step(self.model)), states.shape
 
         def residuals(part: Segments, starts: Array) -> Array:
             return self.lanes(part, starts, np.tile(theta, (len(starts) // len(part), 1)))

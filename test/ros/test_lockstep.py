@@ -13,20 +13,27 @@ LOCKSTEP = {
     "publish_rate": 500.0,
     "noise_position": 1e-5,
     "quantisation_pressure": 10.0,
+    "lockstep_wait": 60.0,  # on a busy machine a controller starts late, and its commands stay away for seconds
+    "lockstep_timeout": 10.0,
 }
 SINE = {"reference.shape": "sine", "reference.amplitude": 0.2, "reference.frequency": 0.2}
 SPAN = 3.0  # s of simulated time
+ENOUGH = int(SPAN * 500)  # samples to be heard, as many as there are in SPAN
 
 Samples = dict[int, tuple[float, float, float]]
 
 
 def heard(one: Probe) -> Samples:
-    """Joint states of the first SPAN seconds, by stamp, of a simulator that waits for its start."""
+    """Joint states by stamp, at least of the first SPAN seconds, of a simulator that waits for its start.
+
+    A fast publisher outruns its listener at times, on a busy machine most of the time: it goes on until enough came.
+    """
     messages = one.heard["joint_states"]
     one.wait(lambda: one.node.count_publishers("joint_states"), "a simulator")
+    one.wait(lambda: one.node.count_publishers("valve/command"), "a controller")
     assert one.pause(False).success
-    one.wait(lambda: messages and stamp(messages[-1]) > SPAN * 1e9, f"{SPAN} s of simulated time")
-    return {stamp(m): (m.position[0], m.velocity[0], m.effort[0]) for m in list(messages) if stamp(m) <= SPAN * 1e9}
+    one.wait(lambda: len(messages) > ENOUGH and stamp(messages[-1]) > SPAN * 1e9, f"{ENOUGH} samples and {SPAN} s")
+    return {stamp(m): (m.position[0], m.velocity[0], m.effort[0]) for m in list(messages)}
 
 
 def together(tmp_path: Path, namespace: str, **more: object) -> Samples:
@@ -54,9 +61,9 @@ def apart(tmp_path: Path, namespace: str) -> Samples:
 
 
 def assert_same_run(one: Samples, other: Samples) -> None:
-    """Samples that arrived in both runs are equal, and nearly all arrived."""
+    """Samples that arrived in both runs are equal, and as many arrived as can be expected of a busy machine."""
     common = sorted(one.keys() & other.keys())
-    assert len(common) > 0.5 * SPAN * LOCKSTEP["publish_rate"]  # a fast publisher outruns its listener at times
+    assert len(common) > 0.5 * ENOUGH
     assert [one[s] for s in common] == [other[s] for s in common]
     assert max(abs(one[s][0]) for s in common) > 0.1
 
@@ -72,11 +79,11 @@ def test_runs_repeat_bit_for_bit_in_one_process_and_in_two(tmp_path: Path) -> No
 def test_another_seed_gives_another_run(tmp_path: Path) -> None:
     first, other = together(tmp_path, "seed_0"), together(tmp_path, "seed_1", seed=1)
     differing = [s for s in first.keys() & other.keys() if first[s] != other[s]]
-    assert len(differing) > 0.5 * SPAN * LOCKSTEP["publish_rate"]
+    assert len(differing) > 0.5 * ENOUGH
 
 
 def test_without_a_controller_it_says_so_and_runs_open_loop(tmp_path: Path) -> None:
-    command = node("simulator", "-r", "__ns:=/alone", **{**LOCKSTEP, "start_paused": False}, lockstep_wait=0.5)
+    command = node("simulator", "-r", "__ns:=/alone", **{**LOCKSTEP, "start_paused": False, "lockstep_wait": 0.5})
     with running(*command, cwd=tmp_path) as process, probe("alone") as one:
         process.wait_for("no controller within 0.5 s")
         process.wait_for("open loop")
