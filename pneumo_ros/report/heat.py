@@ -15,17 +15,29 @@ def heat(ratio: float | None) -> str:
 
 
 def heat_table(heat_map: HeatMap) -> Html:
-    """Rows of linked cells, with the ratio large and its value small, and the scale below."""
+    """Rows of linked cells, with the ratio large and its value small, and the scale below.
+
+    All cells of a row lead to the same run; heard alone, each link says which run, and of what it is the error.
+    """
     head = tag("tr", tag("td"), [tag("th", name, scope="col") for name in heat_map.columns])
     rows = []
     for name, href, ratios, texts in zip(heat_map.rows, heat_map.hrefs, heat_map.ratios, heat_map.texts, strict=True):
         cells = [
-            tag("td", tag("a", tag("b", times(ratio)), " ", tag("small", text), href=href), class_=heat(ratio))
-            for ratio, text in zip(ratios, texts, strict=True)
+            tag("td", _cell(ratio, text, href, f"{name}, {column}"), class_=heat(ratio))
+            for ratio, text, column in zip(ratios, texts, heat_map.columns, strict=True)
         ]
-        rows.append(tag("tr", tag("th", tag("a", name, href=href), scope="row"), cells))
+        rows.append(
+            tag("tr", tag("th", tag("a", name, href=href, aria_label=f"{name}: its plots"), scope="row"), cells)
+        )
     inner = tag("table", tag("caption", heat_map.title), tag("thead", head), tag("tbody", rows), class_="heat")
     return Html(scrolling(inner, heat_map.title) + scale())
+
+
+def _cell(ratio: float | None, text: str, href: str, of: str) -> Html:
+    """The link of a cell."""
+    return tag(
+        "a", tag("b", times(ratio)), " ", tag("small", text), href=href, aria_label=f"{times(ratio)} {text}: {of}"
+    )
 
 
 def scale() -> Html:

@@ -51,6 +51,15 @@ def test_no_name_enters_the_page_as_markup() -> None:
     assert HOSTILE not in text
 
 
+def test_links_of_the_heat_map_say_what_they_are_of() -> None:
+    """Heard alone: the numbers of two runs may be equal, and all cells of a row lead to one place."""
+    markup = page_html(report_of(*compared())).partition('id="overview"')[2].partition("</table>")[0]
+    names = re.findall(r'<a [^>]*aria-label="([^"]*)"', markup)
+    assert len(names) == markup.count("<a ") == 2 * 7
+    assert len(set(names)) == len(names)
+    assert sum(", momentum" in one for one in names) == 2
+
+
 def test_a_policy_forbids_to_load_anything_and_to_run_anything_else() -> None:
     text = page_html(report_of(*compared()))
     (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)

@@ -5,6 +5,8 @@ from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
 
+PATIENCE = 300_000  # ms; a busy machine is not a failure
+
 
 class Tab:
     """A page that was opened; clicks are counted."""
@@ -12,7 +14,7 @@ class Tab:
     def __init__(self, browser: Any, address: str, width: int = 1280, scheme: str = "light") -> None:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
         self.page = context.new_page()
-        self.page.set_default_timeout(300_000)  # a busy machine is not a failure
+        self.page.set_default_timeout(PATIENCE)
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.clicks = 0
@@ -47,9 +49,16 @@ class Tab:
         self.page.get_by_role("button", name=name, exact=True).click()
 
     def tick(self, effect: str) -> None:
-        """Tick an effect."""
+        """Tick an effect; its list may be drawn again meanwhile."""
         self.clicks += 1
-        self.page.get_by_label(effect, exact=True).check()
+        self.page.get_by_label(effect, exact=True).click()
+        self.wait_for_tick(effect, True)
+
+    def wait_for_tick(self, effect: str, ticked: bool) -> None:
+        """Wait until an effect is ticked, or not: the list follows the rest of the page."""
+        from playwright.sync_api import expect  # where it is missing, no browser is there, and tests are skipped
+
+        expect(self.page.get_by_label(effect, exact=True)).to_be_checked(checked=ticked, timeout=PATIENCE)
 
     def view(self, name: str) -> None:
         """Choose a tab of the page, in the bar or in the row of tabs."""
@@ -65,7 +74,7 @@ class Tab:
 
     def traces(self) -> list[dict[str, Any]]:
         """Name, x and y of the traces in the plot of the run."""
-        pick = "one => one._fullData.map(t => ({name: t.name, x: [...t.x], y: [...t.y], yaxis: t.yaxis}))"
+        pick = "one => (one._fullData || []).map(t => ({name: t.name, x: [...t.x], y: [...t.y], yaxis: t.yaxis}))"
         found: list[dict[str, Any]] = self.page.locator("#signals").evaluate(pick)
         return found
 

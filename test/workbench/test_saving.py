@@ -75,6 +75,10 @@ def test_a_printed_panel_is_its_plots(compared: Tab) -> None:
         page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
         assert page.evaluate(width) <= SHEET
         page.evaluate("window.dispatchEvent(new Event('afterprint'))")
-        page.wait_for_function(f"{width} > {SHEET}")
+        for _ in range(600):  # the page's policy forbids Playwright's own waiting
+            if page.evaluate(width) > SHEET:
+                break
+            page.wait_for_timeout(50)
+        assert page.evaluate(width) > SHEET
     finally:
         page.emulate_media(media="screen")

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
 from workbench.leaking import LEAK
 from workbench.tab import Tab
 
@@ -62,10 +61,10 @@ def undone(tab: Tab) -> None:
     """Undo returns to the original machine; the variant can be chosen again."""
     tab.press("Undo")
     tab.see("#machine", "axis (as given)")
-    assert not tab.page.get_by_label("cross piston leakage", exact=True).is_checked()
-    tab.page.get_by_label(f"1: + {LEAK}").check()
+    tab.wait_for_tick("cross piston leakage", False)
+    tab.page.get_by_label(f"1: + {LEAK}").click()
     tab.see("#machine", "axis_1.yaml")
-    expect(tab.page.get_by_label("cross piston leakage", exact=True)).to_be_checked(timeout=60_000)
+    tab.wait_for_tick("cross piston leakage", True)
 
 
 def typed(tab: Tab, machine: Path, folder: Path) -> None:
