@@ -14,6 +14,7 @@ from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.model import STEP
+from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.sensors import driven_lanes
 
@@ -161,15 +162,18 @@ def reads_wrong(effect: type[Effect]) -> bool:
 def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     """Parameter vectors (variants, parameters) in groups of equal sensors: the first of each group, and the groups.
 
-    Sensors that read more than the frame's states and their own states and parameters may differ in every lane.
+    Sensors that read more than parameters, the frame's states and their own states may differ in every lane.
     """
     frame = {"y", "v", *SENSED, *SENSED.values()}
     columns: list[int] = []
+    keys = [name.partition(".")[2] for name in model.parameters]
     for effect in filter(reads_wrong, model.composition.effects):
         reads = {name for function in effect.functions.values() for name in function.reads}
-        if not reads <= frame | set(effect.states) | set(effect.parameters):
+        others = reads - frame - set(effect.states) - set(effect.parameters)
+        if not others <= {*keys} - {*SIGNALS, *model.states}:
             return np.arange(len(parameters)), np.arange(len(parameters))
         columns += [k for k, name in enumerate(model.parameters) if name.partition(".")[0] == effect.name]
+        columns += [k for k, key in enumerate(keys) if key in others]
     _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
     return first, np.ravel(group)
 

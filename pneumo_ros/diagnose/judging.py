@@ -56,7 +56,15 @@ def judged(
                 swing=swing(h, base.evidence.runs[0].sample_time),
             )
         )
-    return list({one.name: one for one in reversed(by_score(found))}.values())[::-1]
+    return best_forms(found)
+
+
+def best_forms(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Each effect in the form of the best score; best score first."""
+    found = dict[str, Candidate]()
+    for one in by_score(candidates):
+        found.setdefault(one.name, one)
+    return list(found.values())
 
 
 def by_score(candidates: Sequence[Candidate]) -> list[Candidate]:

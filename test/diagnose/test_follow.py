@@ -31,6 +31,17 @@ def test_variants_with_the_same_sensors_are_one_group() -> None:
     assert len(set(group)) == 3
 
 
+def test_a_play_before_the_load_reads_the_mass_and_groups_sensors_all_the_same() -> None:
+    model = LATE.with_effects([*LATE.effects, "backlash"], {"backlash.load_share": 0.2})
+    rows = variants(model)
+    heavy = rows[:1].copy()
+    heavy[0, list(model.parameters).index("piston.mass")] *= 1.1
+    _, group = alike_sensors(model, np.concatenate([rows, heavy]))
+    assert group[0] == group[1] == group[2]
+    assert group[3] == group[4]
+    assert len(set(group)) == 4
+
+
 def test_a_variant_gives_the_same_alone_and_beside_others() -> None:
     rows = variants(LATE)
     for k, (states, mean) in driven(rows).items():

@@ -9,7 +9,7 @@ import pytest
 from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.judging import by_score, lag, magnitude, size_in, swing, undetermined
+from pneumo_ros.diagnose.judging import best_forms, by_score, lag, magnitude, size_in, swing, undetermined
 from pneumo_ros.diagnose.score import MARGIN, Score
 from pneumo_ros.diagnose.steps import Step, without
 from pneumo_ros.errors import UsageError
@@ -134,6 +134,15 @@ def test_what_gains_too_little_and_has_no_other_fault_is_undecided(changed: dict
 def test_the_best_score_comes_first() -> None:
     some = [candidate(score=Score(nats, 1.0)) for nats in (5.0, 50.0, -3.0)]
     assert [one.score.train for one in by_score(some)] == [50.0, 5.0, -3.0]
+
+
+def test_an_effect_counts_in_its_best_form() -> None:
+    """A play before the load is far better than one before the sensor, and a load lies between them."""
+    some = [candidate(score=Score(nats, 1.0)) for nats in (5.0, 50.0, -3.0)]
+    play = Hypothesis("backlash", (), np.empty(0), np.empty(0), np.empty(0))
+    forms = [replace(one, hypothesis=play) for one in (some[2], some[1])]
+    found = best_forms([forms[0], some[0], forms[1]])
+    assert [(one.name, one.score.train) for one in found] == [("backlash", 50.0), ("constant_load", 5.0)]
 
 
 class OwnLag(Effect):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, kinds
+from pneumo_ros.diagnose.coordinates import Coordinate, by_kind, coordinates
 from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
 from pneumo_ros.diagnose.slips import Slips, friction_priors
@@ -25,7 +25,7 @@ def alone() -> Model:
 
 
 def kinds_of(name: str) -> list[tuple[Coordinate, ...]]:
-    return kinds(coordinates(truth().library.find(name)))
+    return by_kind(coordinates(truth().library.find(name)))
 
 
 @lru_cache(maxsize=1)
