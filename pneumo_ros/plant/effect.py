@@ -46,7 +46,8 @@ class Parameter:
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
     time by which a signal is late, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
     role. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral. `chosen`:
-    whoever builds or wires the machine chooses it, so that fits leave it alone.
+    whoever builds or wires the machine chooses it, so that fits leave it alone. `span`: in a machine that turns, the
+    width of the range that is allowed at every radius.
     """
 
     default: float
@@ -58,6 +59,7 @@ class Parameter:
     role: str = ""
     optional: bool = False
     chosen: bool = False
+    span: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "optional", self.optional or self.default == self.neutral)
