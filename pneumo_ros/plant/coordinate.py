@@ -74,9 +74,11 @@ def _parameter(one: Parameter, scale: Scale) -> Parameter:
     unit, force, length = ROTARY[one.unit]
     factors = [radius ** (force - length) for radius in _RADII]
     low, high = min(one.low * f for f in factors), max(one.high * f for f in factors)
-    default = float(f"{one.default * scale.force**force * scale.length**length:.{_DIGITS}g}")
-    default = min(max(default, low), high)
-    return replace(one, unit=unit, low=low, high=high, default=default)
+    span = min(abs(one.high - one.low) * f for f in factors)
+    size = scale.force**force * scale.length**length
+    default = min(max(float(f"{one.default * size:.{_DIGITS}g}"), low), high)
+    usual = None if one.usual is None else float(f"{one.usual * size:.{_DIGITS}g}")
+    return replace(one, unit=unit, low=low, high=high, default=default, usual=usual, span=span)
 
 
 def _state(one: State) -> State:

@@ -49,7 +49,8 @@ class Parameter:
     `shapes`: the key of the parameter of the same effect without which this one does nothing; an effect with such a
     parameter has several forms, one for each of its sizes, and a machine has one of them. `optional`: whether a machine
     file may leave the parameter out, as one may whose default is neutral. `chosen`: whoever builds or wires the machine
-    chooses it, so that fits leave it alone.
+    chooses it, so that fits leave it alone. `span`: in a machine that turns, the width of the range
+    that is allowed at every radius.
     """
 
     default: float
@@ -63,6 +64,7 @@ class Parameter:
     chosen: bool = False
     usual: float | None = None
     shapes: str = ""
+    span: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "optional", self.optional or self.default == self.neutral)

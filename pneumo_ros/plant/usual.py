@@ -11,7 +11,8 @@ def usual_size(effect: type[Effect], key: str) -> float:
     """Usual distance of a parameter of `effect` from its neutral value (from 0, if it has none), in its unit.
 
     The stated one, or the distance of its default; where that is 0, the largest of the effect's parameters in the same
-    unit, or a tenth of the allowed range (1 if that is infinite). Always above 0.
+    unit, or a tenth of the allowed range (1 if that is infinite), in a machine that turns of the one at every radius.
+    Always above 0.
     """
     own = effect.parameters[key]
     if own.usual is not None:
@@ -21,5 +22,5 @@ def usual_size(effect: type[Effect], key: str) -> float:
         return size
     others = [one for one in effect.parameters.values() if one.neutral is not None and one.unit == own.unit]
     alike = max((abs(one.default - (one.neutral or 0.0)) for one in others), default=0.0)
-    span = RANGE_SHARE * (own.high - own.low)
+    span = RANGE_SHARE * (own.high - own.low if own.span is None else own.span)
     return (alike if own.neutral is not None else 0.0) or (span if math.isfinite(span) and span > 0.0 else 1.0)

@@ -12,7 +12,7 @@ from pneumo_ros.records.recording import Array, Recording
 PRESSURE_UNITS = {"hPa": 1e2, "kPa": 1e3, "bar": 1e5, "MPa": 1e6, "psi": 6894.757293168}  # [Pa]
 LENGTH_UNITS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254}  # [m]
 ANGLE_UNITS = {"deg": math.pi / 180.0, "mrad": 1e-3, "rev": 2.0 * math.pi}  # [rad]
-_POSITION_UNITS = LENGTH_UNITS | ANGLE_UNITS
+POSITION_UNITS = LENGTH_UNITS | ANGLE_UNITS
 FORCE_UNITS = {"kN": 1e3, "lbf": 4.4482216152605}  # [N], of effort and load cell
 OTHERS = (
     "gauge", "gauge-supply", "swapped-chambers", "reversed-position", "reversed-voltage", "reversed-force",
@@ -22,7 +22,7 @@ LEFT_OUT = {  # word -> fields of a recording that are not used: those of a dead
     "no-effort": ("effort",), "no-load-cell": ("load_cell",),
     "no-command": ("voltage", "command_time", "command", "command_b_time", "command_b"),
 }  # fmt: skip
-WORDS = (*PRESSURE_UNITS, *_POSITION_UNITS, *FORCE_UNITS, *OTHERS, *LEFT_OUT)
+WORDS = (*PRESSURE_UNITS, *POSITION_UNITS, *FORCE_UNITS, *OTHERS, *LEFT_OUT)
 NUMBERS = {  # word=NUMBER, and its units
     "zero": {"": 1.0, "m": 1.0, "mm": 1e-3, "rad": 1.0, "deg": ANGLE_UNITS["deg"]},
     "closed": {"": 1.0, "V": 1.0},
@@ -39,7 +39,7 @@ def parse_words(text: str) -> tuple[str, ...]:
         allowed = (*WORDS, *EXAMPLES)
         raise UsageError(f"--read-as: {unknown_name('word', wrong[0], allowed)}")
     words = tuple(dict.fromkeys(spelling.get(word.lower(), word) for word in given))
-    for what, kinds in (("pressures", PRESSURE_UNITS), ("positions", _POSITION_UNITS), ("forces", FORCE_UNITS)):
+    for what, kinds in (("pressures", PRESSURE_UNITS), ("positions", POSITION_UNITS), ("forces", FORCE_UNITS)):
         if len(units := [word for word in words if word in kinds]) > 1:
             raise UsageError(f"--read-as: {what} are in one unit, not in {' and '.join(units)}")
     return words
@@ -109,7 +109,7 @@ def wiring(words: Sequence[str]) -> Wiring:
     """The wiring that `words` (of WORDS) say."""
     numbers = dict(found for word in words if (found := number(word)) is not None)
     return Wiring(
-        _unit(_POSITION_UNITS, words),
+        _unit(POSITION_UNITS, words),
         numbers.get("zero", 0.0),
         -1.0 if "reversed-position" in words else 1.0,
         -1.0 if "reversed-voltage" in words else 1.0,

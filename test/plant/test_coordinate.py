@@ -108,6 +108,13 @@ def test_priors_follow_from_torque_and_stroke() -> None:
     assert Scale.of({"piston.stroke": "four"}, actuated=True) == Scale()
 
 
+def test_a_usual_size_that_only_a_range_gives_is_one_of_every_radius() -> None:
+    """A tenth of 20 per newton at 1 m; the range allowed is that of 10 mm, a hundred times as wide."""
+    larger = VANE.with_effects([*VANE.effects, "load_dependent_friction"])
+    assert larger.specification("load_dependent_friction.growth").high == pytest.approx(2000.0)
+    assert larger.usual_size("load_dependent_friction.growth") == pytest.approx(2.0)
+
+
 def test_a_mass_along_a_line_has_at_least_a_gram() -> None:
     for model, least in ((AXIS, 1e-3), (VANE, 1e-7)):
         assert model.specification("piston.mass").low == pytest.approx(least)

@@ -13,7 +13,7 @@ from pneumo_ros.records.clocks import after_turns, jumps
 from pneumo_ros.records.corrections import (
     FORCE_UNITS,
     LEFT_OUT,
-    LENGTH_UNITS,
+    POSITION_UNITS,
     PRESSURE_UNITS,
     WORDS,
     corrected,
@@ -47,7 +47,7 @@ def test_what_was_recorded_otherwise_is_put_right(words: tuple[str, ...]) -> Non
     unit = next((PRESSURE_UNITS[word] for word in words if word in PRESSURE_UNITS), 1.0)
     below = ATMOSPHERE if "gauge" in words else 0.0
     a, b, supply = ((p - below) / unit for p in (right.pressure_a, right.pressure_b, right.supply_pressure))
-    length = next((1.0 / LENGTH_UNITS[word] for word in words if word in LENGTH_UNITS), 1.0) * (
+    length = next((1.0 / POSITION_UNITS[word] for word in words if word in POSITION_UNITS), 1.0) * (
         -1.0 if "reversed-position" in words else 1.0
     )
     sign = -1.0 if "reversed-voltage" in words else 1.0
