@@ -34,6 +34,14 @@ WIDE = 60  # machines as the data sheet leaves them, of which some agree with wh
 AGAIN = 4  # times that a trial is tried with other voltages, where it was ended at a limit or did not move
 
 
+class UnmadeError(DataError):
+    """The piston stayed where it was, at all voltages that are known to be safe; `seconds` of the plant's time."""
+
+    def __init__(self, text: str, seconds: float) -> None:
+        super().__init__(text)
+        self.seconds = seconds
+
+
 @dataclass(frozen=True)
 class Move:
     """A programme that was performed: recordings, seconds, and the deviations predicted before and found after it."""
@@ -102,6 +110,7 @@ class Commissioning:
         self.known = knowledge(self.model, ())
         self.wired = Wired(self.words, False)
         self._static: Performed | None = None  # made already, to see the wiring
+        self._unmade: set[str] = set()  # moves at which the piston stays
         self._refuted = False  # the plant has done what the machine as found would not do: the next fit begins anew
 
     # --- stage 0 ------------------------------------------------------------------------------------------------------
@@ -167,7 +176,7 @@ class Commissioning:
             if programme is None:
                 self.tell(f"{name}: left out, as even its smallest voltages may take the piston to an end stop")
                 continue
-            self._take(name, programme)
+            self._taken(name, programme)
 
     # --- stage 3 ------------------------------------------------------------------------------------------------------
 
@@ -176,6 +185,8 @@ class Commissioning:
         best: tuple[float, Programme | None, Told] = (0.0, None, self.known.told)
         possible = self._possible()
         for candidate in moves.candidates(self.known.model, seed=len(self.moves)):
+            if candidate.experiment in self._unmade:
+                continue
             programme = safe(candidate, possible, [self._stands()])
             predicted = self._predicted(programme) if programme else None
             if predicted is not None and (share := shrinkage(self.known.told, *predicted)) > best[0]:
@@ -201,7 +212,8 @@ class Commissioning:
                 break
             free = self.known.known
             expected = dict(zip(free.names, self.known.told.beside(more).deviations() * free.prior, strict=True))
-            self._take(name, programme)
+            if not self._taken(name, programme):
+                continue
             found = {one: self.known.deviations[one] for one in expected}
             done = replace(self.moves[-1], predicted={n: float(d) for n, d in expected.items()}, found=found)
             self.moves[-1] = done
@@ -228,6 +240,17 @@ class Commissioning:
     def _safe(self, programme: Programme) -> Programme | None:
         return safe(programme, self._possible(), [self._stands()])
 
+    def _taken(self, name: str, programme: Programme) -> bool:
+        """Whether the move was made; where the piston stays, it is left out from then on, and the others go on."""
+        try:
+            self._take(name, programme)
+        except UnmadeError as error:
+            self.moves.append(Move(name, (), error.seconds))
+            self._unmade.add(name)
+            self.tell(f"{error}; left out")
+            return False
+        return True
+
     def _take(self, name: str, programme: Programme) -> None:
         self._learn(name, self._performed(programme, name))
 
@@ -242,7 +265,7 @@ class Commissioning:
     def _performed(self, programme: Programme, name: str) -> Performed:
         """Performed, with smaller voltages where a limit was reached, and larger ones where the piston did not return.
 
-        DataError where the plant ends it otherwise.
+        UnmadeError where it never moved, DataError where the plant ends it otherwise.
         """
         words = self.words if programme.blind else self.wired.words
         recordings: list[Recording] = []
@@ -269,7 +292,8 @@ class Commissioning:
             tried = other
         if recordings:
             return Performed(tuple(recordings), seconds, done.reason)
-        raise DataError(f"{name}: {done.reason}; tried {number + 1} times, and no other voltages are known to be safe")
+        text = f"{name}: {done.reason}; tried {number + 1} times, and no other voltages are known to be safe"
+        raise DataError(text) if LIMIT in done.reason else UnmadeError(text, seconds)
 
     def _run(self, recording: Recording) -> Run:
         return as_run(recording, self.model, self.wired.words)

@@ -2,8 +2,10 @@
 
 Both come from the equations in weak form along the recorded motion (`diagnose.evidence`): fitted within what data
 sheets say, their slopes over the parameters give the covariance, with errors correlated within blocks (Liang and Zeger
-1986). A trial that was not made is simulated on the machine as known so far. A design that makes the determinant of the
-information large is D-optimal (Fedorov 1972).
+1986). A trial that was not made is simulated on the machine as known so far. It is worth by how much it narrows the
+deviation of each parameter, all others unknown, too: their product, and not that of all directions together, the
+determinant of the information (D-optimal, Fedorov 1972). That one is fed by ratios of parameters, known to 1e-4 and
+narrower still with every move, while each of them stays as vague as it was.
 """
 
 from collections.abc import Sequence
@@ -74,11 +76,14 @@ def told(evidence: Evidence, model: Model, known: Known, scales: dict[str, float
 
 
 def shrinkage(now: Told, more: Told, seconds: float) -> float:
-    """Share by which a minute of trials that tell `more` in `seconds` shrinks the intervals: their geometric mean."""
-    eye = np.eye(len(now.information))
-    whole = now.information + eye
-    before, after = (np.linalg.slogdet(one)[1] for one in (whole, whole + more.information * (MINUTE / seconds)))
-    return float(1.0 - np.exp(-0.5 * (after - before) / len(eye)))
+    """Share by which a minute of trials that tell `more` in `seconds` shrinks the intervals: their geometric mean.
+
+    The interval of a parameter is its own, the others unknown.
+    """
+    whole = now.information + np.eye(len(now.information))
+    both = whole + more.information * (MINUTE / seconds)
+    before, after = (np.log(np.diag(np.linalg.inv(one))) for one in (whole, both))
+    return float(1.0 - np.exp(0.5 * np.mean(after - before)))
 
 
 @dataclass(frozen=True)

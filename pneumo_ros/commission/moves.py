@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Dead = tuple[float, float]  # V from closed at which the valve begins to open, right and left, both positive
 
 SECONDS = 8.0  # of a move
-SLOW, MODERATE, FAST = 0.12, 0.5, 1.5  # V beyond the dead zone
+CREEP, SLOW, MODERATE, FAST, WIDE_OPEN = 0.015, 0.12, 0.5, 1.5, 6.2  # V beyond the dead zone
 DRAWN = 4  # machines, as they may be, that a move is rehearsed on
 VAGUE = 0.3  # of its value: a deviation beyond which a positive parameter is known by a factor only
 REDRAWN = 20  # times that a machine which cannot be is drawn anew
@@ -48,25 +48,32 @@ def dynamic(model: Model, seed: int = 0) -> Programme:
 def candidates(model: Model, seed: int) -> list[Programme]:
     """The moves to choose from, each of a few seconds; `seed` draws the random ones anew."""
     plain, closed = centred(model), closed_signal(model)
-    right, left = dead_zone(plain)
-    edge = 0.5 * (right + left)
     made = [
         replace(excitation.steps(plain, SECONDS, seed), experiment="steps"),
         excitation.sweep(plain, SECONDS),
         excitation.slow_reversals(plain, 1.5 * SECONDS),
         telling.fast_reversals(plain, SECONDS),
-        *(
-            replace(_constant(plain, edge + beyond), experiment=name)
-            for name, beyond in (("slow-strokes", SLOW), ("strokes", MODERATE), ("fast-strokes", FAST))
-        ),
+        _constant(plain, closed, "creep", CREEP),
+        _constant(plain, closed, "slow-strokes", SLOW),
+        _constant(plain, closed, "strokes", MODERATE),
+        _constant(plain, closed, "wide-strokes", MODERATE, wide=True),
+        _constant(plain, closed, "fast-strokes", FAST),
+        _constant(plain, closed, "wide-open", WIDE_OPEN),
     ]
     single = [one if one.trials[0].direction else replace(one, trials=one.trials[:1]) for one in made]
     return [counted_from(one, closed) for one in single]
 
 
-def _constant(model: Model, volts: float) -> Programme:
-    made = constant_voltage.constant_voltage(model, [round(volts, 3)], 0.4 * SECONDS)
-    return replace(made, trials=tuple(replace(trial, patience=PATIENCE) for trial in made.trials))
+def _constant(model: Model, closed: float, name: str, beyond: float, wide: bool = False) -> Programme:
+    """A stroke each way at a voltage `beyond` [V] the dead zone of its side; `wide`: all the way between the limits."""
+    most, seconds = MAX_VOLTAGE - abs(closed), (1.0 if wide else 0.4) * SECONDS
+    volts = [round(min(edge + beyond, most), 3) for edge in dead_zone(model)]
+    to_right, to_left = (constant_voltage.constant_voltage(model, [one], seconds) for one in volts)
+    trials = tuple(
+        replace(trial, patience=PATIENCE, travel=2.0 * to_right.high if wide else trial.travel)
+        for trial in (to_right.trials[0], to_left.trials[1])
+    )
+    return replace(to_right, experiment=name, trials=trials)
 
 
 def drawn(model: Model, deviations: dict[str, float], count: int, seed: int = 0) -> list[Model]:

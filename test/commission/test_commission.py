@@ -8,7 +8,7 @@ import pytest
 
 from pneumo_ros.commission import moves
 from pneumo_ros.commission.commission import Commissioned, Commissioning
-from pneumo_ros.commission.information import begun, knowledge
+from pneumo_ros.commission.information import Told, begun, knowledge, shrinkage
 from pneumo_ros.commission.performing import Performed
 from pneumo_ros.commission.safe import LATE, again, agreeing, safe, unmoved
 from pneumo_ros.commission.simulated import SimulatedRig
@@ -217,6 +217,59 @@ def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model, monkeyp
     assert len(sent) == 1
     assert len(done.recordings) == 2
     assert "no other voltages are safe" in said[0]
+
+
+def test_a_move_at_which_the_piston_stays_ends_no_commissioning(
+    sheet: Model, truth: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is left out from then on, says so, and its time counts; the other moves go on."""
+    rig, made, said = SimulatedRig(truth), list[str](), list[str]()
+
+    def perform(programme: Programme, words: tuple[str, ...], name: str) -> Performed:
+        if "creep" in name or "static" in name:
+            return Performed((), 7.0, "at +0.22 V the piston stays at +0.013 m; is the supply on?")
+        return rig.perform(programme, words, name)
+
+    job = Commissioning(sheet, perform, sensors=(), tell=said.append)
+    monkeypatch.setattr(job, "_otherwise", list[Model])  # none that would have stayed: no other voltages are safe
+    monkeypatch.setattr(job, "_learn", lambda name, done: made.append(name))
+    job.basics()
+    assert made == ["dynamic"]
+    creep = next(one for one in moves.candidates(sheet, seed=1) if one.experiment == "creep")
+    assert not job._taken("creep", creep)
+    assert [(move.name, move.seconds) for move in job.moves] == [("static", 7.0), ("creep", 7.0)]
+    assert sum("left out" in text for text in said) == 2
+    tried: list[str] = []
+    monkeypatch.setattr("pneumo_ros.commission.commission.safe", lambda one, *_: tried.append(one.experiment))
+    assert job.best_move()[1] is None
+    assert "creep" not in tried
+    assert {"slow-strokes", "wide-strokes", "wide-open"} <= {*tried}
+
+
+def test_the_menu_creeps_and_opens_wide(sheet: Model) -> None:
+    """15 mV beyond the dead zone of each side, where friction is that of rest, and as far as the valve opens."""
+    uneven = sheet.with_parameters({"dead_zone.right_limit": 0.3, "dead_zone.left_limit": 0.1})
+    menu = {one.experiment: one for one in moves.candidates(uneven, seed=1)}
+    assert [trial.voltage.largest for trial in menu["creep"].trials] == pytest.approx([0.315, 0.115])
+    assert [trial.voltage.largest for trial in menu["wide-open"].trials] == pytest.approx([6.5, 6.3])
+    assert [trial.direction for trial in menu["creep"].trials] == [1, -1]
+    wide, usual = (menu[name].trials[0].travel for name in ("wide-strokes", "strokes"))
+    assert wide == pytest.approx(2.0 * menu["strokes"].high)
+    assert wide >= usual
+
+
+def test_a_move_is_worth_what_it_tells_of_each_parameter() -> None:
+    """A ratio of two parameters that is known better still narrows neither of them."""
+
+    def tells(*slopes: list[float]) -> Told:
+        rows = np.array(slopes)
+        return Told(rows, np.zeros(len(rows)), np.zeros(len(rows), dtype=np.int64), {})
+
+    known = tells([100.0, -100.0])
+    ratio, one = tells([300.0, -300.0]), tells([2.0, 0.0])
+    assert shrinkage(known, ratio, 60.0) < 1e-3
+    assert shrinkage(known, one, 60.0) > 0.3
+    assert shrinkage(known, one, 30.0) > shrinkage(known, one, 60.0)
 
 
 def test_ramps_are_rehearsed_though_they_know_no_position(sheet: Model) -> None:
