@@ -26,6 +26,7 @@ from pneumo_ros.runs.inputs import measuring
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.refit import refit
 from pneumo_ros.shooting.windows import free_run
+from pneumo_ros.units import writing
 
 HERE = Path(__file__).parent
 
@@ -120,7 +121,8 @@ def main(bags: Path, only: list[str]) -> int:
     cases = {name: case for name, case in cases.items() if not only or name in only}
     there = {name: case for name, case in cases.items() if (bags / folder_of(name, case)).is_dir()}
     for name, case in there.items():
-        print(row(name, case, bags / folder_of(name, case)), flush=True)
+        with writing(machine(name).coordinate):
+            print(row(name, case, bags / folder_of(name, case)), flush=True)
     absent = ", ".join(name for name in cases if name not in there)
     if absent:
         print(f"no folder in {bags} for: {absent}")
