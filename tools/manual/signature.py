@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pneumo_ros as pn
 from pneumo_ros.compare.compare import Comparison
-from pneumo_ros.compare.dependence import Dependence
+from pneumo_ros.compare.dependence import UNITS, Dependence
 from pneumo_ros.plant.reach import owners_read
 from pneumo_ros.plant.usual import usual_size
 
@@ -70,7 +70,7 @@ def panel(axes: Any, found: Comparison, name: str) -> None:
     if not found.dependences[name]:
         return
     best: Dependence = max(found.dependences[name].values(), key=lambda one: one.explained_share)
-    known = best.as_dict()["unit"]
+    known = UNITS[best.variable]
     of, factor = SCALES.get(known, (known, 1.0))
     bins = best.bins
     low, high = scale * (bins.mean - bins.below), scale * (bins.above - bins.mean)
