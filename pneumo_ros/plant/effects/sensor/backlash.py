@@ -5,7 +5,7 @@ from pneumo_ros.plant.effect import Effect, Parameter, State, pi, sqrt
 # of the faces of the play before a load: far stiffer than the air, and soft enough for steps of a millisecond
 CONTACT_FREQUENCY = 30.0  # Hz: of the load pressed to a face
 CONTACT_DAMPING = 2.0  # damping ratio of the same: a face that was reached is not left by rebound
-CONTACT_DEPTH = 0.03  # of the width of the play: depth within which a face takes hold
+CONTACT_DEPTH = 0.005  # of the width of the play: depth within which a face takes hold
 
 
 def pressed(beyond: float, depth: float) -> float:
