@@ -8,6 +8,8 @@ from types import FrameType
 
 from pneumo_ros.errors import OutOfTimeError
 
+_SOON = 0.02  # s after which a deadline that came at a bad moment is tried again
+
 
 @contextmanager
 def finishing(say: Callable[[], None]) -> Iterator[None]:
@@ -38,19 +40,37 @@ def deadline(seconds: float) -> Iterator[None]:
         yield
         return
 
+    thread, timers = threading.get_ident(), list[threading.Timer]()
+
+    def ring(after: float) -> None:
+        # not the timer of the process, which may be somebody else's
+        timers.append(threading.Timer(after, signal.pthread_kill, (thread, signal.SIGALRM)))
+        timers[-1].daemon = True
+        timers[-1].start()
+
     def out_of_time(number: int, frame: FrameType | None) -> None:
+        if _called_by_compiler(frame):
+            ring(_SOON)
+            return
         raise OutOfTimeError
 
     before = signal.signal(signal.SIGALRM, out_of_time)
-    # not the timer of the process, which may be somebody else's
-    timer = threading.Timer(max(seconds, 0.0), signal.pthread_kill, (threading.get_ident(), signal.SIGALRM))
-    timer.daemon = True
     try:
-        timer.start()
+        ring(max(seconds, 0.0))
         yield
     finally:
         try:
-            timer.cancel()
-            timer.join()
+            for timer in timers:
+                timer.cancel()
+                timer.join()
         finally:
             signal.signal(signal.SIGALRM, before)
+
+
+def _called_by_compiler(frame: FrameType | None) -> bool:
+    """Whether the compiler calls back Python here, to keep what it compiled: what is raised there is lost."""
+    while frame is not None:
+        if frame.f_code.co_name.startswith("_raw_object_cache"):
+            return True
+        frame = frame.f_back
+    return False

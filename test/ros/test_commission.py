@@ -65,7 +65,7 @@ def test_a_plant_is_commissioned_and_a_second_call_reads_what_was_recorded(tmp_p
     for name in ("mine_cascade.yaml", "mine_rig.yaml", "page.html"):
         assert (tmp_path / name).is_file()
     with running(*line, "--overwrite", cwd=tmp_path) as again:  # no plant runs any more
-        assert again.end(None) == 0, again.said
+        assert again.end(None, patience=LONG) == 0, again.said
     assert "recorded before" in again.said
 
 
