@@ -19,9 +19,9 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.reading.read import ATMOSPHERE
 from pneumo_ros.records import Recording
-from pneumo_ros.records.corrections import PRESSURE_UNITS, corrected, number
+from pneumo_ros.records.corrections import POSITION_UNITS, PRESSURE_UNITS, corrected, number
 from pneumo_ros.runs.run import Run, run_for
-from pneumo_ros.units import shown
+from pneumo_ros.units import TURN, shown
 
 LOWEST, HIGHEST = 3e4, 1.4e6  # Pa, the highest pressure that an axis reads while it moves, gauge or absolute
 SECONDS = 30.0  # of the recording that are looked at
@@ -94,7 +94,7 @@ def guess_rig(
         if part.voltage is None or part.pressure_a is None or part.pressure_b is None:
             raise DataError(f"{part.name}: guessing the wiring takes a valve command, a position and both pressures")
     lengths = next((word for part in parts if (word := _length(part, model))), ())
-    factor = 1e-3 if lengths else 1.0
+    factor = POSITION_UNITS[lengths[0]] if lengths else 1.0
     travelled = factor * max(float(np.ptp(part.position)) for part in parts)
     if travelled < SLOWEST:
         raise DataError(
@@ -158,9 +158,10 @@ def _comparable(found: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 
 def _length(recording: Recording, model: Model) -> Sequence[str]:
-    """The word for mm where the piston would travel, or stand away, many strokes in m."""
+    """The word for mm, or degrees, where the piston would travel, or stand away, many strokes in m, or radians."""
     moved, read = float(np.ptp(recording.position)), float(np.abs(recording.position).max())
-    return ("mm",) if moved > 2.0 * model["piston.stroke"] or read > 5.0 * model["piston.stroke"] else ()
+    far = moved > 2.0 * model["piston.stroke"] or read > 5.0 * model["piston.stroke"]
+    return () if not far else ("deg",) if model.coordinate == TURN else ("mm",)
 
 
 def _zeros(parts: Sequence[Recording], model: Model, factor: float) -> list[tuple[str, ...]]:
@@ -170,8 +171,13 @@ def _zeros(parts: Sequence[Recording], model: Model, factor: float) -> list[tupl
     found: list[tuple[str, ...]] = []
     for zero in (0.0, half, -half):
         if low - zero >= -1.1 * half and high - zero <= 1.1 * half:
-            found.append((f"zero={1e3 * zero:g}mm",) if zero else ())
-    return found or [(f"zero={1e3 * 0.5 * (low + high):g}mm",)]
+            found.append((_zero(zero, model),) if zero else ())
+    return found or [(_zero(0.5 * (low + high), model),)]
+
+
+def _zero(position: float, model: Model) -> str:
+    """The word of an encoder that reads `position` at mid stroke."""
+    return f"zero={position:g}rad" if model.coordinate == TURN else f"zero={1e3 * position:g}mm"
 
 
 def _closed(parts: Sequence[Recording], model: Model) -> list[tuple[str, ...]]:

@@ -8,6 +8,7 @@ from typing import Any
 from flask import Flask, Response, jsonify, request
 
 from pneumo_ros.errors import PneumoError, UsageError
+from pneumo_ros.units import writing
 from pneumo_ros.workbench.bags import Bag
 from pneumo_ros.workbench.columns import columns
 from pneumo_ros.workbench.curves import Rig
@@ -35,7 +36,9 @@ def answer_page(server: Flask, desks: Desks, presses: Mapping[str, Callable[[Des
             if not isinstance(asked, dict):
                 return Response("the request is not a JSON object", 400)
             try:
-                return jsonify(make(desks.of(f"/b/{desk}"), asked))
+                found = desks.of(f"/b/{desk}")
+                with writing(found.coordinate):
+                    return jsonify(make(found, asked))
             except KeyError:
                 return Response("there is no such desk; open the page again", 404)
             except (PneumoError, TypeError, ValueError) as problem:

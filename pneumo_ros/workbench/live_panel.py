@@ -14,22 +14,22 @@ from pneumo_ros.workbench.live import KEPT, Live
 from pneumo_ros.workbench.parts import Panels, asked, button, revision
 from pneumo_ros.workbench.thin import packed
 
-# panel -> its series: name, colour, factor
-_PANELS: dict[str, tuple[tuple[str, str, float], ...]] = {
-    "position [mm]": (
+# panel and its unit -> its series: name, colour, factor
+_PANELS: dict[tuple[str, str], tuple[tuple[str, str, float], ...]] = {
+    ("position", "mm"): (
         ("position", "measured", 1e3),
         ("setpoint", "second", 1e3),
         ("reference", "third", 1e3),
         ("predicted_position", "model", 1e3),
     ),
-    "velocity [m/s]": (("velocity", "model", 1.0),),
-    "pressure [kPa]": (
+    ("velocity", "m/s"): (("velocity", "model", 1.0),),
+    ("pressure", "kPa"): (
         ("pressure_a", "measured", 1e-3),
         ("pressure_b", "noise", 1e-3),
         ("predicted_pressure_a", "model", 1e-3),
         ("predicted_pressure_b", "second", 1e-3),
     ),
-    "voltage [V]": (("voltage", "third", 1.0),),
+    ("voltage", "V"): (("voltage", "third", 1.0),),
 }
 _TEXT = (
     "A simulator or a rig whose nodes run in the ROS domain of this computer; to try it, type simulator in a terminal, "
@@ -179,9 +179,9 @@ def live_chart(curves: dict[str, tuple[list[float], list[float]]]) -> dict[str, 
     """The last seconds for the page's script."""
     last = max(times[-1] for times, _ in curves.values())
     panels = []
-    for title, own in _PANELS.items():
+    for (title, unit), own in _PANELS.items():
         traces = [_trace(name, role, factor, curves[name]) for name, role, factor in own if name in curves]
-        panels += [{"title": title, "share": 1, "ticks": [], "traces": traces}] if traces else []
+        panels += [{"title": f"{title} [{shown(unit)}]", "share": 1, "ticks": [], "traces": traces}] if traces else []
     return {"title": "live", "x": "time [s]", "link": "live", "span": [last - KEPT, last], "logX": False,
             "legend": True, "panels": panels, "height": 90 + 125 * len(panels)}  # fmt: skip
 

@@ -78,6 +78,15 @@ def test_one_wrong_plug_is_named(right: pn.Recording, rough: pn.Model, change: A
     assert guess_rig(replace(right, **change(right)), rough).best.words == words
 
 
+def test_a_machine_that_turns_is_in_degrees() -> None:
+    """Its angle was taken for mm once."""
+    vane = pn.load_model("vane")
+    right = pn.simulate(vane, "sine:2,0.7", seconds=6, noise=NOISE | {"position": 1e-4}, name="swings")
+    turned = replace(right, position=np.degrees(right.position + 0.5 * vane["piston.stroke"]))
+    words = guess_rig(turned, vane).best.words
+    assert words == ("deg", f"zero={0.5 * vane['piston.stroke']:g}rad")
+
+
 def test_what_tells_nothing_is_refused(truth: pn.Model, right: pn.Recording) -> None:
     still = replace(right, position=np.zeros(len(right)))
     with pytest.raises(DataError, match="the piston moves 0 mm; record a run that moves it both ways"):

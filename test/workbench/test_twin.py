@@ -1,9 +1,13 @@
 """The live twin: predictions beside measured curves, near for the true machine and far for a wrong one."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from flask import Flask
 
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.workbench.data import answer_page
 from pneumo_ros.workbench.twin import WINDOW, Curves, Twin, predicted
 
 SECONDS = 3.2
@@ -43,6 +47,18 @@ def test_windows_follow_each_other_and_stay_beside_the_measurements(curves: Curv
     times, values = twin.curve("position") or ([], [])
     assert len(times) == len(values) == len(first.time) + len(second.time) + 2  # a gap ends each
     assert "Over the last second the model was off by: position " in twin.says()
+
+
+@pytest.mark.parametrize(("coordinate", "unit", "speed"), [("translation", "mm", "m/s"), ("rotation", "mrad", "rad/s")])
+def test_the_page_gets_the_units_of_the_machine(coordinate: str, unit: str, speed: str) -> None:
+    times = np.linspace(0.0, 1.0, 50).tolist()
+    live = SimpleNamespace(curves=lambda: {"position": (times, times)}, twin=Twin(20), status={}, answer="")
+    desk = SimpleNamespace(coordinate=coordinate, live=live, model=load_model)
+    server = Flask("page")
+    answer_page(server, SimpleNamespace(of=lambda place: desk), {})
+    found = server.test_client().post("/live/one", json={}).get_json()
+    assert [panel["title"] for panel in found["chart"]["panels"]] == [f"position [{unit}]"]
+    assert f" {speed}." in found["says"]
 
 
 def test_what_is_lacking_is_said(curves: Curves) -> None:
