@@ -24,11 +24,8 @@ def headline(result: dict[str, Any]) -> str:
     """The windows that are used, and the noise of the method."""
     points, runs, motion = result["map"]["points"], result["runs"], result["motion"]
     if motion:
-        why = "Pulses or regulators let flow change under a constant command"
-        if motion["in_position_loop"]:
-            why = "The goal drives the position loop, and no command is constant"
         return (
-            f"{why}: fitted by the motion in {motion['segments']} segments of {count(len(runs), 'run')}.\n"
+            f"{motion['why']}: fitted by the motion in {motion['segments']} segments of {count(len(runs), 'run')}.\n"
             f"Within them, predictions are {number(motion['misfit'], 2)} x the noise off (rms)."
         )
     windows, used = sum(run["windows"] for run in runs), len(points["velocity"])

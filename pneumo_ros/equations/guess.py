@@ -18,6 +18,7 @@ Index = NDArray[np.int64]
 # N, error of the balance of forces: a piston that has just stopped oscillates on its bristle (84 Hz on the default
 # machine) with tens of newtons, which smoothing over +-12 ms removes
 _FORCE = 10.0
+_HALF = 0.5  # of the static friction, where this is less: a stuck machine that is weak, or turns, moves at more
 # of the variation of a state without sensor: error of its value when driven along the measurements
 _UNSURE = 0.3
 
@@ -96,8 +97,9 @@ def _scale(model: Model, run: Run, states: Array, frame: Array) -> Array:
     scale[1] = 3.0 * noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3, 1) + 1e-4 + late
     if "z" in model.states:
         stiffness = model["lugre_friction.bristle_stiffness"]
-        scale[model.states.index("z")] = _FORCE / stiffness
-        scale[1] += _FORCE / np.sqrt(stiffness * model["piston.mass"])  # of an oscillation with that force
+        force = min(_FORCE, _HALF * model["lugre_friction.static_friction"])
+        scale[model.states.index("z")] = force / stiffness
+        scale[1] += force / np.sqrt(stiffness * model["piston.mass"])  # of an oscillation with that force
     return scale
 
 

@@ -1,9 +1,10 @@
-"""Identification from any motion, for machines that constant commands do not bring to steady flow.
+"""Identification from any motion, for machines and recordings without steady flow under a constant command.
 
-Pulses of on/off valves and the loops of regulators change the flow while the command is constant: there is no static
-map and no steady mass balance. All parameters are fitted together by multiple shooting instead, in segments so short
-that few hold a breakaway. Two fits to two halves of the segments may end in neighbouring minima, where a breakaway is
-predicted a little early or late: half their difference counts as uncertainty.
+Pulses of on/off valves and the loops of regulators change the flow while the command is constant; a piston that sticks
+and slips, or follows a sine, is nowhere steady: there is no static map and no steady mass balance. All parameters are
+fitted together by multiple shooting instead, in segments so short that few hold a breakaway. Two fits to two halves of
+the segments may end in neighbouring minima, where a breakaway is predicted a little early or late: half their
+difference counts as uncertainty.
 
 A position loop that follows a goal has no constant command either. It corrects what is predicted wrongly, so that its
 segments may be as long as the predictions that are judged: in short ones a small servo hardly moves.
@@ -46,9 +47,13 @@ class MotionIdentification:
     misfit: float  # root mean square of predictions over noise within the segments; 1 when noise explains them
 
 
-def needs_motion(model: Model) -> bool:
-    """Whether no constant command gives steady motion: pulses, a regulator's loop, a loop that follows a goal."""
-    return model.composition.jumping or "pressure_regulator" in model.effects or model.self_driven
+def needs_motion(model: Model) -> str:
+    """Why no constant command gives steady motion: a loop that follows a goal, pulses, a regulator's loop; or ""."""
+    if model.self_driven:
+        return "The goal drives the position loop, and no command is constant"
+    if model.composition.jumping or "pressure_regulator" in model.effects:
+        return "Pulses or regulators let flow change under a constant command"
+    return ""
 
 
 def parameters_of(model: Model, wanted: Sequence[str]) -> tuple[str, ...]:

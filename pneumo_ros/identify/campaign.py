@@ -5,12 +5,12 @@
 3. the mass balance of the same stretches -> flow coefficients and dead zone
 4. presliding -> bristle stiffness; Eqs. 15-16, corrected, for parameters it does not show
 
-Machines with on/off valves or regulators have no steady flow, those in a position loop no constant command: see
-`by_motion`.
+Machines with on/off valves or regulators have no steady flow, those in a position loop no constant command, and a
+piston that sticks and slips no constant velocity: see `by_motion`.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from pneumo_ros.identify.by_motion import fit_by_motion, needs_motion
 from pneumo_ros.identify.flow import coefficients
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
-from pneumo_ros.identify.steady import Window, find_windows
+from pneumo_ros.identify.steady import TRAVEL, Window, find_windows
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run, check_position
 
@@ -47,7 +47,8 @@ class Identification:
     points: tuple[MapPoint, ...]
     breakaways: tuple[Breakaway, ...]
     map_fit: MapFit
-    segments: int = 0  # fitted by their motion, where a constant command gives no steady flow
+    why_motion: str = ""  # why parameters were fitted by the motion in `segments`, where there is no static map
+    segments: int = 0
     misfit: float = float("nan")  # root mean square of their predictions over the noise
 
 
@@ -57,17 +58,19 @@ def identify(
     """Identify friction, and where there is a valve its flow coefficients, from constant-voltage runs.
 
     `free` are the friction parameters to fit; those the model does not have are ignored. Runs may differ in sample
-    time. Raises UsageError for a model without LuGre friction, DataError when the runs hold too few steady stretches
-    or leave the stroke.
+    time. Without one steady stretch all is fitted by the motion. Raises UsageError for a model without LuGre friction,
+    DataError when the runs hold too few steady stretches or no motion, or leave the stroke.
     """
     tell = progress or (lambda share, text: None)
     tell(0.0, "looking for steady stretches")
     _check(model, runs)
-    if needs_motion(model):
-        return _by_motion(model, runs, free, tell)
+    if why := needs_motion(model):
+        return _by_motion(model, runs, why, free, tell)
     windows = tuple(w for run in runs for w in find_windows(model, run))
     points = tuple(map_points(windows))
-    _enough(windows, points, "force" if model.force_driven else "voltage")
+    if not points:
+        why = _unsteady(runs, windows, "force" if model.force_driven else "voltage")
+        return replace(_by_motion(model, runs, why, free, tell), windows=windows)
     breakaways = tuple(b for run in runs for b in find_breakaways(model, run))
     tell(0.2, f"{len(points)} steady points, {len(breakaways)} breakaways")
     wanted = tuple(name for name in free if name in model.parameters)
@@ -85,14 +88,15 @@ def identify(
     )
 
 
-def _by_motion(model: Model, runs: Sequence[Run], free: Sequence[str], tell: Progress) -> Identification:
-    """Without a static map: all parameters together, from any motion."""
+def _by_motion(model: Model, runs: Sequence[Run], why: str, free: Sequence[str], tell: Progress) -> Identification:
+    """Without a static map, for the reason `why`: all parameters together, from any motion."""
     found = fit_by_motion(model, runs, free, tell)
     empty = np.empty(0)
     nothing = MapFit({}, {}, np.empty((0, 0)), (), empty, empty, float("nan"), {})
     return Identification(
-        model, found.model, found.parameters, found.undetermined, {}, (), (), (), nothing, found.segments, found.misfit
-    )
+        model, found.model, found.parameters, found.undetermined, {}, (), (), (), nothing, why, found.segments,
+        found.misfit,
+    )  # fmt: skip
 
 
 def _check(model: Model, runs: Sequence[Run]) -> None:
@@ -108,15 +112,17 @@ def _check(model: Model, runs: Sequence[Run]) -> None:
         check_position(model, run)
 
 
-def _enough(windows: Sequence[Window], points: Sequence[MapPoint], held: str) -> None:
-    if points:
-        return
-    advice = "record runs of several seconds each: pneumo experiment constant-voltage"
-    if not windows:
-        raise DataError(f"the {held} is nowhere constant for a quarter of a second; {advice}")
-    reasons = [w.reason for w in windows]
-    common = max(set(reasons), key=reasons.count)
+def _unsteady(runs: Sequence[Run], windows: Sequence[Window], held: str) -> str:
+    """Why there is no steady stretch. Raises DataError where the piston does not move either."""
+    why = f"The {held} is nowhere constant for a quarter of a second"
+    if windows:
+        reasons = [w.reason for w in windows]
+        common = max(set(reasons), key=reasons.count)
+        why = f"No stretch of constant velocity in {len(windows)} windows of constant {held}"
+        why += f" ({reasons.count(common)} times: {common})"
+    if any(float(np.ptp(run.position)) > TRAVEL for run in runs):
+        return why
     raise DataError(
-        f"no stretch of constant velocity in {len(windows)} windows of constant {held}; "
-        f"{reasons.count(common)} times: {common}. Leave out other runs, or {advice}"
+        f"{why[0].lower()}{why[1:]}, and no motion to fit instead; record runs in which the piston moves: "
+        "pneumo experiment constant-voltage"
     )

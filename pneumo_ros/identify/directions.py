@@ -29,7 +29,7 @@ def _side(found: Identification, sign: int, free: Sequence[str]) -> dict[str, An
     breakaways = [b for b in found.breakaways if b.direction == sign]
     side: dict[str, Any] = {"points": len(points), "breakaways": len(breakaways), "parameters": {}, "undetermined": {}}
     if found.segments:
-        return side | {"problem": "the machine has no static map: pulses or regulators change its flow"}
+        return side | {"problem": f"there is no static map: {found.why_motion[0].lower()}{found.why_motion[1:]}"}
     try:
         fit = fit_map(found.model, points, breakaways, free)
     except DataError as problem:

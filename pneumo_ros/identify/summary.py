@@ -51,7 +51,10 @@ def _motion(found: Identification) -> dict[str, Any] | None:
     """How parameters were fitted to any motion; None where constant commands gave a static map."""
     if not found.segments:
         return None
-    return {"segments": found.segments, "misfit": found.misfit, "in_position_loop": found.model.self_driven}
+    return {
+        "why": found.why_motion, "segments": found.segments, "misfit": found.misfit,
+        "in_position_loop": found.model.self_driven,
+    }  # fmt: skip
 
 
 def _fit_quality(found: Identification) -> dict[str, Any]:

@@ -135,17 +135,29 @@ def test_a_stuck_piston_among_the_runs_does_no_harm() -> None:
 @pytest.mark.parametrize(
     ("runs", "words"),
     [
-        ([constant_run(0.5, seconds=10.0)], "39 windows of constant voltage; 39 times: the piston rests or creeps"),
-        ([rig("train_sweep")[2]], "the voltage is nowhere constant for a quarter of a second; record runs of several"),
+        ([constant_run(0.5, seconds=10.0)], r"voltage \(39 times: the piston rests or creeps\), and no motion to fit"),
         ([constant_run(1.0), constant_run(1.0)], r"constant_\+1.00V is given twice"),
         ([replace(constant_run(1.0), position=1e3 * constant_run(1.0).position)], "outside the stroke"),
-        ([], "nowhere constant"),
+        ([], "the voltage is nowhere constant for a quarter of a second, and no motion"),
     ],
-    ids=["stuck", "sweep", "twice", "millimetres", "none"],
+    ids=["stuck", "twice", "millimetres", "none"],
 )
 def test_what_cannot_be_identified_is_said(runs: list, words: str) -> None:
     with pytest.raises((DataError, UsageError), match=words):
         identify(wrong(), runs)
+
+
+def test_without_one_steady_stretch_all_is_fitted_by_the_motion() -> None:
+    """A sweep shows no static map and every parameter: it was refused once."""
+    true, _, run = rig("train_sweep")
+    filling = COEFFICIENTS[0]
+    found = identify(true.with_parameters({COULOMB: 1.2 * true[COULOMB], filling: 0.9 * true[filling]}), [run])
+    assert found.why_motion == "The voltage is nowhere constant for a quarter of a second"
+    assert found.segments > 50
+    for name in (COULOMB, filling):
+        low, high = found.parameters[name].interval
+        assert low < true[name] < high
+        assert found.model[name] == pytest.approx(true[name], rel=0.02)
 
 
 def test_a_machine_without_lugre_friction_is_refused() -> None:

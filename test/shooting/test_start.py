@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.making import own, rig
 
-from pneumo_ros.equations.guess import first_guess
+from pneumo_ros.equations.guess import first_guess, guess_states
 from pneumo_ros.plant import Model, load_model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.segments import cut_at
@@ -32,6 +32,15 @@ def test_the_fit_beats_the_first_guess() -> None:
         np.std(found[:, 4] - truth[AT, 4]) for found in (first_guess(model, run, AT), start_states(model, run, AT))
     ]
     assert spread[0] > 3.0 * spread[1]
+
+
+def test_the_first_guess_is_no_surer_than_the_friction_of_a_weak_machine_allows() -> None:
+    """The force on the bristle is known within 10 N, or half the static friction where that is less, as of a vane."""
+    model, _, run = own("steps")
+    weak = model.with_parameters({f"lugre_friction.{one}_friction": 2.0 for one in ("static", "coulomb")})
+    for one, known in ((model, 10.0), (weak, 1.0)):
+        force = guess_states(one, run, AT).scale[one.states.index("z")] * one["lugre_friction.bristle_stiffness"]
+        assert force == pytest.approx(known)
 
 
 @pytest.mark.parametrize("name", ["train_steps", "train_creep"])
