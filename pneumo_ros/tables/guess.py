@@ -196,19 +196,21 @@ def _missing(time: TimeGuess | None, signals: dict[str, Guess], names: list[str]
         missing.append("no column is a position; type under signals: position: {column: NAME, unit: mm}")
     if not any(name in signals for name in _BEHAVIOUR):
         currents = [name for name in names if re.search(CURRENT, words_of(name))]
+        turns = "position" in signals and unit_of(signals["position"].unit).dimension == "angle"
+        unit = "N m" if turns else "N"
         missing.append(
-            "no column is a force, a pressure or a command; type under signals: force: {column: NAME, unit: N}"
-            + (_by_current(currents))
+            f"no column is a force, a pressure or a command; type under signals: force: {{column: NAME, unit: {unit}}}"
+            + _by_current(currents, unit)
         )
     return missing
 
 
-def _by_current(columns: list[str]) -> str:
+def _by_current(columns: list[str], unit: str) -> str:
     """What else to type where a motor's current was recorded, which makes its force by a constant."""
     if not columns:
         return ""
     name = json.dumps(columns[0], ensure_ascii=False)
-    return f", or, with the constant of the motor in place of K, force: {{columns: [{name}], gains: [K], unit: N}}"
+    return f", or, with the constant of the motor in place of K, force: {{columns: [{name}], gains: [K], unit: {unit}}}"
 
 
 def _range(values: Array) -> str:

@@ -169,6 +169,6 @@ def test_a_friction_force_is_measured_and_drives_nothing() -> None:
 def test_the_current_of_a_motor_makes_a_force_by_its_constant() -> None:
     found = guessed({"t [s]": TIME, "angle [deg]": 57.0 * X, "motor_current_A": V, "coolant [degC]": X})
     assert not found.complete
-    assert 'force: {columns: ["motor_current_A"], gains: [K], unit: N}' in " ".join(found.open)
+    assert 'force: {columns: ["motor_current_A"], gains: [K], unit: N m}' in " ".join(found.open)
     found = guessed({"t [s]": TIME, "angle [deg]": 57.0 * X, "coolant [degC]": X})
     assert "gains" not in " ".join(found.open)
