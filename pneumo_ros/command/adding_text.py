@@ -19,7 +19,9 @@ HEADS = {"given": "as given", "before": "refitted", "after": "with it"}
 def text(result: Mapping[str, Any]) -> str:
     """The whole answer; `result` is the verb's JSON."""
     refit = result["refit"]
-    moved = "\n".join(part for part in (moved_sentence(refit), table_text(moved_table(refit))) if part)
+    added = [one["effect"] for one in result["added"]]
+    said = (moved_sentence(refit, added), table_text(moved_table(refit, added)))
+    moved = "\n".join(part for part in said if part)
     recordings = "held-out recordings" if result["held_out"] else "recordings, which were fitted too"
     what = f"{result['horizon_s']:g} s, rms over the {recordings}"
     signals = table_text(signals_table(result["errors"], HEADS, what))

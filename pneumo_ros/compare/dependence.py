@@ -81,7 +81,11 @@ def _variables(residual: Residual, motion: Along, width: float) -> dict[str, Arr
     """Means of each variable over the residual's windows."""
     run = motion.run
     signals = {"velocity": motion.velocity, "position": run.position}
-    signals["force" if run.force_driven else "voltage"] = motion.input
+    if not (run.force_driven and run.imposed):  # there the force is what is predicted, and all follows from it
+        signals["force" if run.force_driven else "voltage"] = motion.input
+    if run.force_driven and not run.by_pressures:
+        pressed = {"pressure_a": run.pressure_a, "pressure_b": run.pressure_b}
+        signals |= {name: pressure for name, pressure in pressed.items() if pressure is not None}
     if not run.force_driven:
         signals |= {chamber.field: run.signals[chamber.signal] for chamber in motion.chambers}
     if not run.force_driven and len(motion.chambers) > 1:

@@ -25,7 +25,7 @@ from pneumo_ros.diagnose.score import Scoring
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
-from pneumo_ros.runs.inputs import measured_inputs
+from pneumo_ros.runs.inputs import measured_inputs, predicts_force
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.physical import physical
 from pneumo_ros.shooting.refit import default_free
@@ -48,8 +48,11 @@ class Fitter:
     ) -> None:
         """`candidates`: names of the effects that may be added; by default all that the model lacks."""
         self.start, self._held_runs = start, held
+        runs = [*train, *held]
         self.lacking = found = (
-            missing(start, measured_inputs([*train, *held])) if candidates is None else _coordinates(start, candidates)
+            missing(start, measured_inputs(runs), predicts_force(runs))
+            if candidates is None
+            else _coordinates(start, candidates)
         )
         self.whole = everything(start, found)  # one kernel for all that may be added
         self._profiles: dict[Evidence, dict[str, Array]] = {}  # slopes of profiles, by the evidence they belong to

@@ -16,7 +16,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
-from pneumo_ros.plant.reach import acting
+from pneumo_ros.plant.reach import acting, reads_drive
 from pneumo_ros.runs.run import SENSORS
 from pneumo_ros.shooting.bounded import bounded_minimum, finite
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
@@ -124,16 +124,18 @@ class BaseFit:
         return slice(0, len(self.names) - self.bends)
 
 
-def missing(model: Model, measured: Collection[str]) -> dict[str, tuple[Coordinate, ...]]:
+def missing(model: Model, measured: Collection[str], imposed: bool = False) -> dict[str, tuple[Coordinate, ...]]:
     """Coordinates of every library effect that the model lacks, that can fade in, and that fits its other effects.
 
-    `measured`: the inputs that recordings hold; an effect that reads another one is left out.
+    `measured`: the inputs that recordings hold; an effect that reads another one is left out. `imposed`: whether a test
+    machine imposed the motion of a machine without chambers, so that its drive is the force that is predicted. An
+    effect that reads it would follow from itself, and explain everything.
     """
     found = {}
     for name in model.library.names():
         if name not in FRAME and name not in model.effects:
             kind = model.library.find(name)
-            never = kind.part or (kind.transmission and not model.force_driven)
+            never = kind.part or (kind.transmission and not model.force_driven) or (imposed and reads_drive(kind))
             effect = () if never else coordinates(kind)
             if effect and _fits(model, name, measured):
                 found[name] = effect

@@ -57,6 +57,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     [1/s], whose effect saturates: in a large chamber all that happens is slow.
     """
     found = missing(base.model, base.everything.inputs)
+    found = {name: effect for name, effect in found.items() if name in base.everything.effects}
     if absent := {name.split("_")[1] for run in base.evidence.runs for name in run.assumed}:
         found = {n: e for n, e in found.items() if not couples(base.everything, e, min(absent))}
     each = [(name, form) for name, effect in found.items() for form in forms(effect)]

@@ -39,7 +39,11 @@ def fit_map(model: Model, points: Sequence[MapPoint], breakaways: Sequence[Break
     if len(points) < len(seen) + 1:
         raise DataError(
             f"{len(points)} steady stretches are too few for {len(seen)} friction parameters; record more "
-            "constant-voltage runs: pneumo experiment constant-voltage"
+            + (
+                "runs at constant velocity, or fit friction to any motion: pneumo compare BAG --refit --out MODEL"
+                if model.force_driven
+                else "constant-voltage runs: pneumo experiment constant-voltage"
+            )
         )
     problem = _MapProblem(model, points, breakaways, seen, tuple(unknown))
     best = min(problem.solutions(), key=lambda solution: float(solution.cost)).x

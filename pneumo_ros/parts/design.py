@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pneumo_ros.errors import UsageError
 from pneumo_ros.parts import wishes
 from pneumo_ros.parts.assemble import assemble, effects_of, full_signal
 from pneumo_ros.parts.order import ATMOSPHERE, DIMENSIONS, REGULATOR, Order, of_parts, order_of
 from pneumo_ros.parts.quantity import parse, pressure
 from pneumo_ros.parts.shelf import Shelf
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.effects.frame.air import Air
 
 SWITCHED = 1.0  # V from closed, beyond which a switched valve has its full flow
 
@@ -98,7 +100,7 @@ def design(said: Wishes, shelf: Shelf, name: str = "new") -> Design:
         barrel,
         ports,
         opening=opening,
-        supply=pressure(said.supply, "the supply", ATMOSPHERE),
+        supply=_of_air(pressure(said.supply, "the supply", ATMOSPHERE)),
         mass=parse(said.mass, "mass", "the mass", plain="kg", example="10kg"),
         tilt=wishes.tilt(said.mounting),
         ways="" if valve is None else REGULATOR if valve.kind == REGULATOR else valve.ways,
@@ -106,6 +108,18 @@ def design(said: Wishes, shelf: Shelf, name: str = "new") -> Design:
     read_as = wishes.read_as(said.sensors)
     made = assemble(order, name)
     return Design(made.model, made.notes, made.sources, order, full_signal(order), read_as, tuple(_cautions(order)))
+
+
+def _of_air(supply: float) -> float:
+    """The supply pressure [Pa]; UsageError for one that is of oil."""
+    most = Air.parameters["supply_pressure"].high
+    if supply > most:
+        raise UsageError(
+            f"the supply is {1e-5 * supply:.4g} bar absolute; a machine file has up to {1e-5 * most:.4g} bar, of air. "
+            "Of a cylinder that oil moves, friction and load alone are judged, driven by both pressures: give --supply "
+            "6barg and any --valve-flow, which then count for nothing, and --read-as no-command with its recordings"
+        )
+    return supply
 
 
 def _cautions(order: Order) -> list[str]:

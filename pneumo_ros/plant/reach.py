@@ -25,6 +25,11 @@ def _is_measured(name: str) -> bool:
     return name in SIGNALS and SIGNALS[name].kind == "measured"
 
 
+def reads_drive(effect: type[Effect]) -> bool:
+    """Whether an effect reads the drive force."""
+    return any(name in ("drive", DRIVE) for reads, _ in _functions(effect) for name in reads)
+
+
 def owners_read(effect: type[Effect]) -> tuple[str, ...]:
     """Names of the other effects whose parameters an effect reads, as owner__key, sorted."""
     reads = {name for function in effect.functions.values() for name in function.reads}

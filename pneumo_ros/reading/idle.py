@@ -30,6 +30,9 @@ _HANGS, _SLOWEST = (
     1.0,
     5e-3,
 )  # s of one value without noise; s between samples: slower ones do not show noise
+_USUALLY = 0.999  # share of the steps from sample to sample that count as usual ones
+_SETTLES, _JUMP = 3, 2.0  # samples over which a filter spreads a jump; times the usual steps in them
+_BEFORE = 20  # samples before a hang that lasts to the end
 _TRAVEL = 0.05  # m both ways
 _UNITS = {"position_m": "m", "pressure_a_pa": "Pa", "pressure_b_pa": "Pa"}
 _TOPICS = {"position_m": "the position", "pressure_a_pa": "chamber_a/pressure", "pressure_b_pa": "chamber_b/pressure"}
@@ -61,7 +64,22 @@ def _hung(run: Run, signal: Array) -> tuple[int, int] | None:
         return None
     rest = np.delete(signal, slice(start, stop))
     floor = max(resolution(rest) / np.sqrt(12.0), 1e-6 * float(np.ptp(rest)))  # of a signal without noise
-    return (start, stop) if noise_level(rest) > 1.5 * floor else None
+    return (start, stop) if noise_level(rest) > 1.5 * floor and _jumps(signal, start, stop) else None
+
+
+def _jumps(signal: Array, start: int, stop: int) -> bool:
+    """Whether a signal leaves the value that it repeats by more than it ever moves in a sample, or was moving before.
+
+    A counter at rest repeats its value, too, and goes on from there.
+    """
+    steps = np.abs(np.diff(signal))
+    largest = float(np.quantile(np.delete(steps, slice(max(start - 1, 0), stop)), _USUALLY))
+    if stop < len(signal):
+        after = signal[stop : stop + _SETTLES]
+        return bool(np.abs(after - signal[start]).max() > _JUMP * len(after) * largest)
+    before = signal[max(start - _BEFORE, 0) : start + 1]
+    moved = np.abs(before[-1] - before[0]) / max(len(before) - 1, 1)
+    return bool(moved > 0.1 * largest)
 
 
 def _rests(model: Model, run: Run, since: int, until: int) -> Iterator[str]:

@@ -125,6 +125,8 @@ def _trusted(recording: Recording, model: Model, run: Run) -> tuple[Run, list[st
     """The run without measured inputs that are not plausible, and a note on each; DataError if `model` reads them."""
     chambers, notes = PRESSURES if model.force_driven else (), list[str]()
     needed = {*model.inputs, *(chambers if recording.pressures_drive else ())}
+    if model.force_driven and "measured_supply" not in needed:  # it fills nothing here, be it air or oil
+        run = replace(run, further={name: held for name, held in run.further.items() if name != "measured_supply"})
     for names, check, what in (
         (chambers, _check_oil, "its pressures are not used, and no effect of them is tried"),
         (("measured_supply",), partial(_check_supply, model, run), "its supply pressure is not used"),

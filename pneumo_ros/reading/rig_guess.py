@@ -20,6 +20,7 @@ from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.reading.read import ATMOSPHERE
 from pneumo_ros.records import Recording
 from pneumo_ros.records.corrections import POSITION_UNITS, PRESSURE_UNITS, corrected, number
+from pneumo_ros.records.unfit import FILLED, check_pressures
 from pneumo_ros.runs.run import Run, run_for
 from pneumo_ros.units import TURN, shown
 
@@ -92,7 +93,11 @@ def guess_rig(
     names = ", ".join(part.name for part in parts)
     for part in parts:
         if part.voltage is None or part.pressure_a is None or part.pressure_b is None:
-            raise DataError(f"{part.name}: guessing the wiring takes a valve command, a position and both pressures")
+            raise DataError(
+                f"{part.name}: guessing the wiring takes a valve command, a position and both pressures. A machine "
+                "that a force or an imposed motion drives needs no guess: give --read-as the units, and type pneumo "
+                "compare BAG --model MODEL; where a sign or unit is wrong, it says so"
+            )
     lengths = next((word for part in parts if (word := _length(part, model))), ())
     factor = POSITION_UNITS[lengths[0]] if lengths else 1.0
     travelled = factor * max(float(np.ptp(part.position)) for part in parts)
@@ -112,7 +117,7 @@ def guess_rig(
         if (residuals := _residuals(parts, model, said)) is not None:
             found.append(Hypothesis(said, residuals))
     if not found:
-        raise DataError(f"{names}: as no wiring makes sense with '{model.name}': is it this machine's recording?")
+        raise DataError(_senseless(parts, model))
     found = _comparable(found)
     least = min(one.size for one in found)
     ranked = sorted(
@@ -121,6 +126,18 @@ def guess_rig(
     )
     plain = next((one for one in found if not one.words), None)
     return Guess(tuple(ranked), plain)
+
+
+def _senseless(parts: Sequence[Recording], model: Model) -> str:
+    """Why no hypothesis makes sense: pressures of oil, as far as the recording itself says so."""
+    names = ", ".join(part.name for part in parts)
+    if max(float(p.max()) for part in parts for p in (part.pressure_a, part.pressure_b) if p is not None) > FILLED:
+        try:
+            for part in parts:
+                check_pressures(part)
+        except DataError as problem:
+            return str(problem)
+    return f"{names}: no wiring makes sense with '{model.name}': is it this machine's recording?"
 
 
 def moving_part(recording: Recording) -> Recording:

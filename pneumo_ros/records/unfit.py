@@ -10,6 +10,7 @@ from pneumo_ros.records.recording import Array, Recording
 
 _FEWEST, _SLOWEST = 50, 0.0505  # samples; s between them: valve and friction act within milliseconds
 _VACUUM, _MOST = 1e4, 1e7  # Pa: lowest and highest pressure in a chamber of a pneumatic axis
+FILLED = 5.5e6  # Pa: highest where a valve fills it, a tenth above the highest supply of a machine file
 _OIL = 1e8  # Pa: highest pressure where the fluid is not modelled: that of a hydraulic cylinder
 _USUAL = 5e4  # Pa: the pressures of a running axis reach it, gauge or absolute
 _ABOVE_SUPPLY = 1.1  # times the supply pressure: most that a chamber reaches for long
@@ -72,8 +73,9 @@ def check_pressures(recording: Recording, oil: bool = False) -> None:
     """Raises DataError for chamber pressures outside the range of absolute pressures in Pa, of gas or `oil`."""
     pressures = {"chamber_a/pressure": recording.pressure_a, "chamber_b/pressure": recording.pressure_b}
     given = {topic: pressure for topic, pressure in pressures.items() if pressure is not None}
+    most = _OIL if oil else _MOST if recording.voltage is None else FILLED
     for topic, pressure in given.items():
-        _check_size(recording, topic, pressure, list(given.values()), _OIL if oil else _MOST)
+        _check_size(recording, topic, pressure, list(given.values()), most)
 
 
 def check_supply(recording: Recording) -> None:
@@ -82,7 +84,7 @@ def check_supply(recording: Recording) -> None:
     if supply is None:
         return
     others = [one for one in (recording.pressure_a, recording.pressure_b) if one is not None]
-    _check_size(recording, "supply/pressure", supply, [supply, *others])
+    _check_size(recording, "supply/pressure", supply, [supply, *others], FILLED)
     for topic, pressure in (("chamber_a", recording.pressure_a), ("chamber_b", recording.pressure_b)):
         if pressure is not None and np.quantile(pressure, 0.99) > _ABOVE_SUPPLY * supply.max():
             raise DataError(
@@ -115,8 +117,15 @@ def _check_size(recording: Recording, topic: str, pressure: Array, both: list[Ar
     span = f"{recording.name}: {topic} is {lowest:.4g} to {highest:.4g}"
     wanted = "absolute pressures in Pa are needed"
     if highest > most:
-        kind = "a pneumatic axis has" if most == _MOST else "a hydraulic one has"
-        raise DataError(f"{span} Pa, more than {kind}; {wanted}: check the unit, and --read-as if given")
+        kind = "a hydraulic one has" if most == _OIL else "a pneumatic axis has"
+        of_oil = (
+            "; of a cylinder that oil moves, friction and load alone are judged, driven by both pressures: type "
+            "--read-as no-command"
+        )
+        raise DataError(
+            f"{span} Pa, more than {kind}; {wanted}: check the unit, and --read-as if given"
+            f"{of_oil if most == FILLED else ''}"
+        )
     if highest < -_VACUUM:
         raise DataError(f"{span}: it counts the wrong way; change its sign where it is published")
     if lowest == highest or (np.mean(pressure < 0.0) > 0.2 and highest < _VACUUM):

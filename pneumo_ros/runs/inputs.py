@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.library import is_part
 from pneumo_ros.plant.mechanical import mechanical, pneumatic
+from pneumo_ros.plant.reach import reads_drive
 from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.run import METERED, SENSORS, Run
 
@@ -20,6 +22,11 @@ IN_PLACE = {  # inputs that take the place of a constant: what they are, and the
 def measured_inputs(runs: Sequence[Run]) -> tuple[str, ...]:
     """Names of the inputs that every run holds, U first."""
     return DRIVE, *(name for name in SENSORS if all(name in run.further for run in runs))
+
+
+def predicts_force(runs: Sequence[Run]) -> bool:
+    """Whether a test machine imposed the motion, and the drive of these runs is the force that it took."""
+    return any(run.imposed and run.force_driven for run in runs)
 
 
 def measuring(model: Model, runs: Sequence[Run]) -> Model:
@@ -63,7 +70,18 @@ def in_place(model: Model, found: Model, runs: Sequence[Run]) -> str:
 
 
 def check_inputs(model: Model, run: Run) -> None:
-    """Raises DataError, with the sensors that would be needed, when `model` reads an input that `run` lacks."""
+    """Raises DataError when `model` reads an input that `run` lacks, with the sensors that would be needed.
+
+    And where an effect of it reads the drive, and that is the force of an imposed motion, which is predicted.
+    """
+    if model.force_driven and not model.self_driven and predicts_force([run]):
+        for effect in model.composition.effects:
+            if not is_part(effect) and reads_drive(effect):
+                raise DataError(
+                    f"{run.name}: the motion was imposed, and its force is what is predicted; effect {effect.name} of "
+                    f"'{model.name}' reads that force as its drive, and would predict it from itself: leave "
+                    f"{effect.name} out"
+                )
     absent = [name for name in model.inputs if name != DRIVE and name not in run.further]
     if not absent:
         return
@@ -108,7 +126,7 @@ def judged(model: Model, runs: Sequence[Run]) -> str:
         if model.has_valve and _supply_unmeasured(runs):
             lacking.append("a sagging supply by itself (supply/pressure would add it)")
         found += ["flow into chamber a"] if METERED in model.composition.measured else []
-    if "load_force" not in measured_inputs(runs) and not model.imposed:
+    if "load_force" not in measured_inputs(runs) and not (model.imposed or predicts_force(runs)):
         lacking.append("load apart from friction (a load_cell would add it)")
     said = f"Judged: {', '.join(found)}."
     return f"{said} Not judged: {'; '.join(lacking)}." if lacking else said
@@ -124,7 +142,10 @@ def _adding_momentum(model: Model, assumed: Sequence[str]) -> str:
 
 
 def _open_side(runs: Sequence[Run]) -> str:
-    """What is assumed of a chamber without a sensor where the pressures drive the piston."""
+    """What is assumed of a chamber without a sensor where the pressures drive the piston or press on its seals."""
+    if shared := [n for n in ("p_a", "p_b") if any(n in run.computed for run in runs)]:
+        side = shared[0][-1]
+        return f" (chamber {side} is taken at the other's pressure; chamber_{side}/pressure would show it)"
     absent = [n for n in ("p_a", "p_b") if any(run.by_pressures and n not in run.further for run in runs)]
     if not absent:
         return ""

@@ -234,8 +234,10 @@ def make_run(
         held = np.zeros(len(cells)) if free else _commands_at(recording, cells)
     measured = {"p_a": recording.pressure_a, "p_b": recording.pressure_b} if driven else {}
     measured |= {one.input: recording.signals.get(one.name) for one in MEASURED}
+    computed = frozenset[str]()
     if driven and recording.imposed:
         del measured["load_force"]  # there it is the force that is predicted
+        computed = _shared(measured)
     further = {name: np.interp(cells, time, signal) for name, signal in measured.items() if signal is not None}
     if recording.command_b is not None and recording.command_b_time is not None:
         further["U_b"] = _in_force(recording.command_b_time, recording.command_b, cells)
@@ -243,8 +245,22 @@ def make_run(
         further["imposed_velocity"] = np.repeat(np.diff(position) / step, PARTS)
     return Run(
         recording.name, step, position, pressures["a"], pressures["b"], held, distance < _GAP * step, driven, further,
-        imposed or (driven and recording.imposed), by_pressures=by_pressures, assumed=frozenset(assumed),
+        imposed or (driven and recording.imposed), by_pressures=by_pressures, computed=computed,
+        assumed=frozenset(assumed),
     )  # fmt: skip
+
+
+def _shared(measured: dict[str, Array | None]) -> frozenset[str]:
+    """Give both sides of a friction rig the pressure of its one sensor, and name the side without one.
+
+    Such a rig presses on its seals with the pressure that it measures, so that their mean is that pressure.
+    """
+    known = [one for one in (measured["p_a"], measured["p_b"]) if one is not None]
+    absent = frozenset(name for name in ("p_a", "p_b") if measured[name] is None)
+    if len(known) != 1:
+        return frozenset()
+    measured |= dict.fromkeys(absent, known[0])
+    return absent
 
 
 def run_for(recording: Recording, model: Model) -> Run:

@@ -1,5 +1,7 @@
 """The map of an unknown table, guessed from headings, units, ranges, and which column is the rate of which."""
 
+import json
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,7 +10,7 @@ from pneumo_ros.records.recording import Array
 from pneumo_ros.tables.guess_time import TimeGuess, guess_time
 from pneumo_ros.tables.guess_units import gauge_by_range, unit_by_range, unsigned_bits, velocity_unit
 from pneumo_ros.tables.heading import heading
-from pneumo_ros.tables.hints import NEEDED, points, words_of
+from pneumo_ros.tables.hints import CURRENT, NEEDED, points, words_of
 from pneumo_ros.tables.signals import SIGNALS
 from pneumo_ros.tables.table import Table
 from pneumo_ros.tables.units import UNITS, find_unit, unit_of
@@ -62,7 +64,7 @@ def guess(table: Table) -> Guesses:
     for signal in (name for name in SIGNALS if name in chosen):
         signals[signal] = _described(signal, chosen, scores, table, signals, slopes, doubts)
     doubts += _compressed(table, signals)
-    missing = _missing(time, signals)
+    missing = _missing(time, signals, list(usable))
     taken = {one.column for one in signals.values()} | ({time.column} if time else set())
     unused = {name: _range(values) for name, values in table.columns.items() if name not in taken}
     imposed = "load_cell" in signals and "command" not in signals and "force" not in signals
@@ -185,18 +187,30 @@ def _compressed(table: Table, signals: dict[str, Guess]) -> list[str]:
     ]
 
 
-def _missing(time: TimeGuess | None, signals: dict[str, Guess]) -> list[str]:
-    """Sentences on what a recording needs and was not found."""
+def _missing(time: TimeGuess | None, signals: dict[str, Guess], names: list[str]) -> list[str]:
+    """Sentences on what a recording needs and was not found among the columns of these names."""
     missing = []
     if time is None:
         missing.append("no column is a time: none rises throughout; type time: {rate: HZ}, the rows in a second")
     if "position" not in signals:
         missing.append("no column is a position; type under signals: position: {column: NAME, unit: mm}")
     if not any(name in signals for name in _BEHAVIOUR):
+        currents = [name for name in names if re.search(CURRENT, words_of(name))]
+        turns = "position" in signals and unit_of(signals["position"].unit).dimension == "angle"
+        unit = "N m" if turns else "N"
         missing.append(
-            "no column is a force, a pressure or a command; type under signals: force: {column: NAME, unit: N}"
+            f"no column is a force, a pressure or a command; type under signals: force: {{column: NAME, unit: {unit}}}"
+            + _by_current(currents, unit)
         )
     return missing
+
+
+def _by_current(columns: list[str], unit: str) -> str:
+    """What else to type where a motor's current was recorded, which makes its force by a constant."""
+    if not columns:
+        return ""
+    name = json.dumps(columns[0], ensure_ascii=False)
+    return f", or, with the constant of the motor in place of K, force: {{columns: [{name}], gains: [K], unit: {unit}}}"
 
 
 def _range(values: Array) -> str:

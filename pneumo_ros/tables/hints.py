@@ -10,6 +10,8 @@ NEEDED = 2  # points from which a column is taken for a signal
 UNIT = 3  # points for a unit of the signal's dimension
 _NAMED = ("reference", "command", "supply_pressure")  # and signals without words of their own: only by their names
 _REFERENCE = r"\b(ref|reference|goal|target|set ?point|desired|wanted|demand|soll)\b"
+_FRICTION = r"\b(friction|reibung|reibkraft)\b"  # that a motion takes: it drives nothing
+CURRENT = r"\b(curr|current|strom|amps?|i)\b"  # of a motor, whose torque it makes
 _GAS = r"\b(p|pa|pb|ps|pressure|press|prs|druck)\b"
 # signal -> (pattern of the words in a name, points)
 _WORDS: dict[str, tuple[tuple[str, int], ...]] = {
@@ -24,11 +26,11 @@ _WORDS: dict[str, tuple[tuple[str, int], ...]] = {
     "force": (
         (r"\b(motor|drive|driving|actuator|applied|input) (force|torque)\b", 6),
         (r"\b(torque|effort|tau|drehmoment|vir)\b", 4), (r"\b(force|kraft|load|pwm)\b", 3), (r"^f$", 3),
-        (r"\b(cell|test machine|measured)\b", -4), (_REFERENCE, -6),
+        (r"\b(cell|test machine|measured)\b", -4), (_FRICTION, -6), (_REFERENCE, -6),
     ),
     "load_cell": (
         (r"\b(load ?cell|(rod|test machine|machine|measured) force|force (sensor|cell|meas|measured))\b", 6),
-        (r"\b(force|kraft)\b", 2), (_REFERENCE, -6),
+        (r"\b(force|kraft)\b", 2), (_FRICTION, 4), (_REFERENCE, -6),
     ),
     "pressure_a": (
         (_GAS, 1), (r"\b(a|1|cap|bore|piston|lower|pa)\b", 2), (r"\b(spring|chamber|cyl|cylinder|gas)\b", 1),

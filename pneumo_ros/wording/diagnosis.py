@@ -49,6 +49,7 @@ class DiagnosisWords:
 
 def diagnosis(result: Mapping[str, Any]) -> DiagnosisWords:
     """The words of a diagnosis; `result` is the JSON of `diagnose`, of plain types."""
+    effects = [one["effect"] for one in result["added"]]
     horizon, heads = result["horizon_s"], {"before": "refitted"} | ({"after": "final model"} if result["added"] else {})
     return DiagnosisWords(
         verdict=result["verdict"],
@@ -63,8 +64,8 @@ def diagnosis(result: Mapping[str, Any]) -> DiagnosisWords:
         signals=signals_table(result["holdout"], heads, f"{horizon:g} s, rms over the held-out recordings"),
         candidates=candidates(result),
         remains=(*remains(result), *unseen(result)),
-        moved=moved_sentence(result["refit"]),
-        moved_table=moved_table(result["refit"]),
+        moved=moved_sentence(result["refit"], effects),
+        moved_table=moved_table(result["refit"], effects),
         experiment=result["suggested_experiment"],
         horizon=horizon,
     )

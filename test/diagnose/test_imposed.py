@@ -1,14 +1,20 @@
 """A gas spring on a test machine that imposes its motion: sealed chambers are judged, driven and predicted alone."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 import pytest
+from identify.making import recording
 
 from pneumo_ros.compare.compare import compare
 from pneumo_ros.diagnose.diagnosis import diagnose
+from pneumo_ros.diagnose.fitter import Fitter
+from pneumo_ros.diagnose.screening import screen
+from pneumo_ros.errors import DataError
 from pneumo_ros.plant import Model
-from pneumo_ros.runs.run import PARTS, Run
+from pneumo_ros.runs.inputs import check_inputs, judged
+from pneumo_ros.runs.run import ATMOSPHERE, PARTS, Run, make_run
 
 SAMPLE, FINE = 0.01, 20  # s; steps of the truth in a sample
 AREA, VOLUME = (4.1e-4, 3.0e-4), (5.1e-4, 4.0e-4)
@@ -115,3 +121,54 @@ def test_the_force_of_an_imposed_motion_is_predicted_and_its_position_is_not() -
     assert not fails.equations["momentum"].explained_by_noise
     speed = np.gradient(rig(1, 0.0).position, 2e-3)
     assert fails.runs[0].error["force_n"].rms == pytest.approx(100.0 * speed.std(), rel=0.1)
+
+
+def sealed(name: str, pressure: float, speed: float) -> Run:
+    """A seal rig at one pressure, which one sensor measures; the seal's friction rises with it."""
+    rng, time = np.random.default_rng(1), 2e-3 * np.arange(4001)
+    position = speed / 3.0 * np.sin(3.0 * time) + 2e-6 * rng.standard_normal(len(time))
+    v = speed * np.cos(3.0 * time)
+    friction = (20.0 + RISE * (pressure - ATMOSPHERE)) * np.tanh(v / 1e-3)
+    cell = friction - FRICTION["piston.mass"] * 3.0 * speed * np.sin(3.0 * time) + 0.3 * rng.standard_normal(len(time))
+    whole = recording(
+        name=name, time=time, position=position, pressure_a=np.full(len(time), pressure), pressure_b=None,
+        load_cell=cell, effort=None, description={"map": {"motion": "imposed"}},
+    )  # fmt: skip
+    return make_run(whole, force_driven=True)
+
+
+RISE = 7e-5  # N/Pa
+SEAL_RUNS = ((1e5, 0.03), (3e5, 0.1), (5e5, 0.06), (7e5, 0.1))
+
+
+def test_friction_of_a_seal_rig_follows_the_pressure_of_its_one_sensor() -> None:
+    """And not the force that is predicted: an effect of the drive would follow from itself."""
+    model = Model.build(["lugre_friction"], FRICTION, name="rig", frame=("piston",))
+    *train, held = (sealed(f"seal_{k}", *one) for k, one in enumerate(SEAL_RUNS))
+    fitter = Fitter(model, train, [held])
+    assert "load_dependent_friction" not in fitter.lacking
+    best = screen(fitter.ranking_fit(fitter.refit(model)))[0]
+    assert best.name == "pressure_dependent_friction"
+    assert best.values["pressure_dependent_friction.coefficient"] == pytest.approx(RISE, rel=0.1)
+    said = judged(model, train)
+    assert "chamber b is taken at the other's pressure; chamber_b/pressure would show it" in said
+    assert "load_cell" not in said
+
+
+def test_an_effect_of_the_drive_is_refused_where_the_drive_is_predicted() -> None:
+    model = Model.build(
+        ["lugre_friction", "load_dependent_friction"], FRICTION, name="rig", frame=("piston",), defaults=True
+    )
+    with pytest.raises(DataError, match=r"load_dependent_friction of 'rig' reads that force as its drive.*leave"):
+        check_inputs(model, rig(1, 0.0))
+    free = replace(rig(1, 0.0), imposed=False)
+    check_inputs(model, free)
+    plain = Model.build(["lugre_friction"], FRICTION, frame=("piston",))
+    assert "load_dependent_friction" in Fitter(plain, [free]).lacking
+
+
+def test_what_an_imposed_force_lacks_follows_pressure_and_not_itself() -> None:
+    model = Model.build(["lugre_friction"], FRICTION, name="rig", frame=("piston",))
+    found = compare(model, [sealed(f"seal_{k}", *one) for k, one in enumerate(SEAL_RUNS)])
+    assert "force" not in found.dependences["momentum"]
+    assert "pressure_a" in found.dependences["momentum"]

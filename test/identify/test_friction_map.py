@@ -13,6 +13,7 @@ from pneumo_ros.identify.campaign import FRICTION
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, sliding_friction
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.mechanical import mechanical
 
 STATIC, COULOMB, STRIBECK, DRAG = FRICTION[:4]
 SPEEDS = (0.004, 0.008, 0.012, 0.018, 0.03, 0.06, 0.1, 0.18)
@@ -165,8 +166,13 @@ def test_a_held_value_on_its_bound_does_no_harm() -> None:
 
 
 def test_too_few_points_are_refused() -> None:
-    with pytest.raises(DataError, match="4 steady stretches are too few for 4 friction parameters; record more"):
+    too_few = "4 steady stretches are too few for 4 friction parameters; record more"
+    with pytest.raises(DataError, match=f"{too_few} constant-voltage runs"):
         fit_map(wrong(), points((0.005, 0.03), each=1), [], FRICTION[:4])
+    moved = mechanical(wrong(), by_force=True)
+    assert moved is not None
+    with pytest.raises(DataError, match=f"{too_few} runs at constant velocity, or fit .*--refit"):
+        fit_map(moved, points((0.005, 0.03), each=1), [], FRICTION[:4])
 
 
 def test_the_same_points_give_the_same_numbers() -> None:

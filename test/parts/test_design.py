@@ -128,6 +128,7 @@ def test_a_valve_of_a_data_sheet_is_a_proportional_one(tmp_path: Path) -> None:
         ({"cylinder": "iso15552-32"}, r"the stroke of the cylinder is missing; give"),
         ({"rod": "40"}, r"bore 32 mm, rod 40 mm .* make no cylinder"),
         ({"supply": "1bara"}, r"the supply is 1 bar absolute; it takes more than the atmosphere"),
+        ({"supply": "160barg"}, r"161 bar absolute; .* up to 50 bar, of air.*oil moves.*--read-as no-command"),
         ({"mass": "0"}, r"the mass is 0 kg; it takes the moving mass, above 0"),
         ({"mounting": "120deg"}, r"the mounting is 120 deg; it takes -90 to 90"),
         ({"mass": "1e9"}, r"piston.mass is 1000000000.0 kg; allowed is"),

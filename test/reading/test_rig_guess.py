@@ -95,6 +95,14 @@ def test_what_tells_nothing_is_refused(truth: pn.Model, right: pn.Recording) -> 
         guess_rig(replace(right, voltage=None), truth)
 
 
+def test_pressures_of_oil_are_named(truth: pn.Model, right: pn.Recording) -> None:
+    assert right.pressure_a is not None
+    assert right.pressure_b is not None
+    oil = replace(right, pressure_a=20.0 * right.pressure_a, pressure_b=20.0 * right.pressure_b)
+    with pytest.raises(DataError, match=r"more than a pneumatic axis has.*--read-as no-command"):
+        guess_rig(oil, truth)
+
+
 def test_the_verb_writes_a_file_that_other_verbs_take(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, right: pn.Recording, rough: pn.Model, capsys: Any
 ) -> None:

@@ -20,7 +20,7 @@ from pneumo_ros.records.corrections import (
     parse_words,
 )
 from pneumo_ros.records.series import Series
-from pneumo_ros.records.unfit import check_use
+from pneumo_ros.records.unfit import check_pressures, check_use
 
 N = 2000
 TIME = np.arange(N) * 1e-3
@@ -131,6 +131,17 @@ def test_units_are_recognised_by_their_numbers(unit: str, gauge: bool, size: flo
 def test_a_unit_that_is_given_without_need() -> None:
     with pytest.raises(DataError, match=r"more than a pneumatic axis has.*--read-as"):
         check_use(corrected(axis(), ("bar",), ATMOSPHERE), False)
+
+
+def test_oil_is_not_taken_for_gas() -> None:
+    """70 bar: no machine file has such a supply of air; in sealed chambers, which no valve fills, it may be gas."""
+    right = axis()
+    oil = replace(right, pressure_a=10.0 * right.pressure_a, pressure_b=10.0 * right.pressure_b)
+    assert 5.5e6 < oil.pressure_a.max() < 1e7
+    with pytest.raises(DataError, match=r"more than a pneumatic axis has.*oil moves.*--read-as no-command"):
+        check_use(oil, False)
+    check_pressures(oil, oil=True)
+    check_pressures(replace(oil, voltage=None))
 
 
 @pytest.mark.parametrize("offset", [-2e4, 2e4])

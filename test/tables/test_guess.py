@@ -152,3 +152,23 @@ def test_a_pressure_that_goes_with_the_speed_is_no_velocity() -> None:
     named = guessed({"t": TIME, "y": X, "signal 7": pressure, "u": np.sign(V)})
     assert "velocity" not in named.signals
     assert taken(guessed({"t": TIME, "y": X, "signal 7": V, "u": np.sign(V)}))["velocity"] == "signal 7"
+
+
+def test_a_friction_force_is_measured_and_drives_nothing() -> None:
+    rows = {
+        "t [s]": TIME,
+        "Displacement [mm]": 1e3 * X,
+        "Friction force [N]": 40.0 * np.tanh(20.0 * V),
+        "p [bar]": 3.0 + X,
+    }
+    found = guessed(rows)
+    assert taken(found)["load_cell"] == "Friction force [N]"
+    assert found.imposed
+
+
+def test_the_current_of_a_motor_makes_a_force_by_its_constant() -> None:
+    found = guessed({"t [s]": TIME, "angle [deg]": 57.0 * X, "motor_current_A": V, "coolant [degC]": X})
+    assert not found.complete
+    assert 'force: {columns: ["motor_current_A"], gains: [K], unit: N m}' in " ".join(found.open)
+    found = guessed({"t [s]": TIME, "angle [deg]": 57.0 * X, "coolant [degC]": X})
+    assert "gains" not in " ".join(found.open)
