@@ -3,7 +3,7 @@
 A light piston on soft bristles breaks away below the static friction. It rings on its bristles, at 60 Hz and with
 little damping, and so does it as the force rises; friction holds only the level of the Stribeck curve at the velocity
 of that ringing. And after a step of the command the force rises by 20 N and more while the slip grows: when the slip
-began is computed with mass and friction of the data sheet, and the mean rise before it.
+began is computed with mass and friction of the data sheet, and the rise before it.
 """
 
 import numpy as np

@@ -1,11 +1,12 @@
 """Effects added by name: the parameters of the model and of the new effects, fitted to recordings together.
 
 First along the measured signals, where candidates start from several shapes and sizes; then by multiple shooting
-(`polishing`), which alone determines when the piston breaks away.
+(`polishing`), which alone determines when the piston breaks away. Its values are taken, and the others say how sure
+they are.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import Progress, polish
 from pneumo_ros.diagnose.prediction import typical_error, windowed
 from pneumo_ros.diagnose.refining import refine
+from pneumo_ros.diagnose.ruler import finest
 from pneumo_ros.diagnose.timing import EFFECT, lateness, later
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
@@ -94,14 +96,16 @@ def add(
         larger = _with(fitter, larger, name, horizon)
     if fitter.known(base).names:  # none: sealed chambers of known volume
         base = polish(fitter, base, train, ROUGHLY, threads=threads, progress=_part(tell, 0.2, 0.5, "without")).model
+    along = {} if larger.self_driven else estimates_along(fitter, larger)  # a loop's equations are biased
     found = polish(fitter, larger, train, threads=threads, progress=_part(tell, 0.5, 0.85, "with"))
+    least = {n: finest(found.model, n) for n in found.estimates if n.partition(".")[0] in effects}
     judged, compared, errors = held or train, list[Comparison](), list[float]()
     for k, one in enumerate((model, base, found.model)):
         tell(0.85 + 0.05 * k, "predicting the recordings")
         compared.append(compare(one, judged, horizon))
         errors.append(typical_error(windowed(one, judged, horizon)))
     return Adding(
-        tuple(effects), base, found.model, found.estimates, compared[1], compared[2], compared[0],
+        tuple(effects), base, found.model, agreed(found.estimates, along, least), compared[1], compared[2], compared[0],
         (errors[0], errors[1], errors[2]), tuple(run.name for run in train), tuple(run.name for run in judged), late,
     )  # fmt: skip
 
@@ -143,6 +147,24 @@ def _with(fitter: Fitter, model: Model, name: str, horizon: float) -> Model:
 
 def _part(tell: Progress, first: float, last: float, what: str) -> Progress:
     return lambda share, _: tell(first + (last - first) * share, f"refitting {what} what is added, by prediction")
+
+
+def agreed(
+    predicted: Mapping[str, Estimate], along: Mapping[str, Estimate], least: Mapping[str, float]
+) -> dict[str, Estimate]:
+    """Estimates by prediction, as unsure as those along the signals of the same recordings show them to be.
+
+    What two estimates of one parameter differ by beyond both deviations is an error of the model, which neither of them
+    holds (the variance between studies of DerSimonian and Laird 1986, all of it to each). Without an estimate along
+    the signals, or where they do not determine it, the deviation stays. `least`: deviations to be added to it.
+    """
+    found = {}
+    for name, one in predicted.items():
+        other = along.get(name, one)
+        beyond = (one.value - other.value) ** 2 - other.std**2 if np.isfinite(other.std) else 0.0
+        std = float(np.hypot(np.sqrt(max(one.std**2, beyond)), least.get(name, 0.0)))
+        found[name] = replace(one, std=std, low=one.value - 1.96 * std, high=one.value + 1.96 * std)
+    return found
 
 
 def estimates_along(fitter: Fitter, model: Model) -> dict[str, Estimate]:

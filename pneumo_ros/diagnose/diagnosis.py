@@ -11,9 +11,9 @@ from pneumo_ros.blas import on_one_thread
 from pneumo_ros.compare.compare import Comparison, compare
 from pneumo_ros.diagnose.between import moved_between
 from pneumo_ros.diagnose.candidate import Candidate
-from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.diagnose.prediction import typical_error
+from pneumo_ros.diagnose.ruler import finest
 from pneumo_ros.diagnose.search import Progress, Search
 from pneumo_ros.diagnose.steps import Found, Step
 from pneumo_ros.diagnose.verdict import excess, failing, material, missed, significant, verdict
@@ -22,8 +22,6 @@ from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
-
-RULER = 1e-3  # of a value, or of the largest size of its kind: areas, volumes and sensor gains are known no better
 
 
 def diagnose(
@@ -118,16 +116,13 @@ def noise_levels(comparison: Comparison) -> dict[str, float]:
 def _addition(step: Step, model: Model, std: dict[str, float], before: float, after: float) -> Addition:
     assert step.added is not None
     name, std = step.added.name, std | step.added.std
-    sizes = {c.name: c.unit for c in coordinates(model.library.find(name)) if c.is_size}
     values, effect = {}, model.library.find(name)
     idle = effect.idle({key: model[f"{name}.{key}"] for key in effect.parameters})
     for key, parameter in effect.parameters.items():
         if key in idle:
             continue
         dotted = f"{name}.{key}"
-        kind = [dotted, *(n for n, unit in sizes.items() if unit == sizes.get(dotted))]
-        ruler = RULER * max(abs(model[n]) for n in kind)
-        values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), ruler), parameter.unit)
+        values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), finest(model, dotted)), parameter.unit)
     return Addition(
         name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t, step.added.score
     )

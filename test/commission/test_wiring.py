@@ -8,6 +8,7 @@ import pytest
 import pneumo_ros as pn
 from pneumo_ros.command.main import main
 from pneumo_ros.command.verb.rig import text
+from pneumo_ros.commission import wiring
 from pneumo_ros.commission.wiring import fitted
 from pneumo_ros.parts.design import Wishes, design
 from pneumo_ros.parts.shelf import load_shelf
@@ -49,6 +50,23 @@ def test_a_fit_tells_mirror_images_apart(sheet: pn.Model, strokes: pn.Recording)
         assert judged.best.words == words
         assert judged.certain
         assert {one.words for one in judged.ranked} == {one.words for one in found.ranked}
+
+
+def test_other_valves_are_tried_only_where_the_stated_one_explains_nothing(
+    sheet: pn.Model, strokes: pn.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A machine as its file says, and one with a friction that the file lacks."""
+    tried: list[int] = []
+    fit = wiring._fit
+    monkeypatch.setattr(wiring, "_fit", lambda fitter, number: (tried.append(number), fit(fitter, number))[1])
+    alike = Guess((Hypothesis(MIRRORED, {"momentum": 1.0}), Hypothesis((), {"momentum": 1.1})), None)
+    healthy = pn.simulate(sheet, "sine:2.5,1", seconds=3.0, noise=NOISE, name="healthy")
+    for recording, valves in ((healthy, {0}), (strokes, {0, 1, 2, 3})):
+        tried.clear()
+        judged = fitted(alike, [recording], sheet)
+        assert judged.best.words == ()
+        assert judged.decided
+        assert set(tried) == valves
 
 
 def test_the_verb_is_sure_of_full_strokes(

@@ -3,17 +3,20 @@
 from dataclasses import replace
 from functools import lru_cache
 
+import numpy as np
 import pytest
 from identify.making import recording_of
 from rig import case as rig_case
 from rig.effects import Wish, build
 
+import pneumo_ros as pn
 from pneumo_ros.compare.compare import Comparison
-from pneumo_ros.diagnose.adding import Adding, add, check_addable
+from pneumo_ros.diagnose.adding import Adding, add, agreed, check_addable
 from pneumo_ros.diagnose.polishing import telling
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
 from pneumo_ros.runs.run import PARTS, Run, make_run
+from pneumo_ros.shooting.refit import Estimate
 
 LOAD = 35.0  # N against extension
 SECONDS = 12.0
@@ -62,6 +65,37 @@ def test_what_the_model_has_is_estimated_against_what_was_known() -> None:
     one = added().estimates["lugre_friction.static_friction"]
     assert one.before == load_model()["lugre_friction.static_friction"]
     assert one.prior == pytest.approx(0.03 * one.before)
+
+
+def test_two_fits_that_disagree_widen_the_interval() -> None:
+    def one(value: float, std: float) -> Estimate:
+        return Estimate(value, std, value - 1.96 * std, value + 1.96 * std, 10.0, 3.0)
+
+    predicted = {name: one(10.0, 0.1) for name in ("near", "far", "unseen", "alone")} | {"lost": one(10.0, np.inf)}
+    along = {"near": one(10.5, 0.6), "far": one(11.0, 0.6), "unseen": one(20.0, np.inf), "lost": one(11.0, 0.1)}
+    found = agreed(predicted, along, {"alone": 0.2})
+    assert {name: one.std for name, one in found.items()} == pytest.approx(
+        {"near": 0.1, "far": 0.8, "unseen": 0.1, "alone": np.hypot(0.1, 0.2), "lost": np.inf}
+    )
+    assert found["far"].value == 10.0
+    assert found["far"].high == pytest.approx(10.0 + 1.96 * 0.8)
+
+
+@pytest.mark.check
+def test_intervals_hold_where_another_effect_is_missing() -> None:
+    """A leak is not added: dead zones by prediction are 4 of their deviations off, and say so."""
+    axis, noise = load_model(), {"position": 1e-5, "pressure_a": 300.0, "pressure_b": 300.0}
+    hidden = {"viscous_friction.coefficient": 40.0, "cross_piston_leakage.conductance": 1e-10}
+    truth = axis.with_effects([*axis.effects, "viscous_friction", "cross_piston_leakage"], hidden)
+    shapes = ("sine:2.5,0.5", "sine:1.5,0.25", "sine:3.5,1.0")
+    train = [
+        make_run(pn.simulate(truth, shape, seconds=6.0, noise=noise, seed=seed, name=shape))
+        for seed, shape in enumerate(shapes)
+    ]
+    found = add(axis, ["viscous_friction"], train)
+    known = {name: one for name, one in found.estimates.items() if one.determined}
+    assert len(known) > 6
+    assert all(one.low < truth[name] < one.high for name, one in known.items())
 
 
 def test_segments_hold_the_breakaways() -> None:

@@ -6,8 +6,9 @@ import pytest
 from diagnose.recording import recordings_of
 
 from pneumo_ros.command.demo.revealing import judge
-from pneumo_ros.diagnose.diagnosis import RULER, diagnose
+from pneumo_ros.diagnose.diagnosis import diagnose
 from pneumo_ros.diagnose.outcome import Outcome
+from pneumo_ros.diagnose.ruler import RULER
 from pneumo_ros.plant import load_model
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.constant import constant_run, truth
 
-from pneumo_ros.equations.breakaway import Breakaway, find_breakaways, holding_force
+from pneumo_ros.equations.breakaway import Breakaway, find_breakaways, holding_force, last_slope
 
 STATIC = 100.0  # N, of the paper's machine
 
@@ -24,6 +24,26 @@ def test_slow_rises_give_the_force_best() -> None:
     slow, fast = (find_breakaways(truth(), constant_run(volts))[0] for volts in (0.80, 7.0))
     assert slow.spread < 1.0 < 5.0 < fast.spread
     assert abs(slow.force - STATIC) < 1.0 < abs(fast.force - STATIC)
+
+
+@pytest.mark.parametrize("volts", [3.0, -5.0, 7.0])
+def test_the_ramp_is_that_of_the_last_20_ms(volts: float) -> None:
+    """After a step of the command the force is flat, rises, and rises less as the chamber fills."""
+    (found,) = find_breakaways(truth(), constant_run(volts))
+    force = found.direction * holding_force(truth(), constant_run(volts, noisy=False))
+    last = (force[found.index] - force[found.index - 20]) / 0.02
+    assert found.ramp == pytest.approx(last, rel=0.05)
+
+
+def test_a_slope_is_local_where_it_bends_and_a_mean_where_it_does_not() -> None:
+    """1200 N/s over the last 30 ms of 150; and 20 N/s throughout, which 20 ms alone know to 23 N/s only."""
+    time, noise = np.arange(151) * 1e-3, np.random.default_rng(0).normal(0.0, 0.6, (200, 151))
+    bent = [last_slope(np.maximum(time - 0.12, 0.0) * 1200.0 + one, 1e-3, 0.6) for one in noise]
+    assert np.mean(bent) == pytest.approx(1200.0, rel=0.02)
+    straight = [last_slope(20.0 * time + one, 1e-3, 0.6) for one in noise]
+    assert np.mean(straight) == pytest.approx(20.0, abs=2.0)
+    alone = [np.polyfit(time[-21:], one[-21:], 1)[0] for one in noise]
+    assert np.std(straight) < 0.5 * np.std(alone)
 
 
 def test_a_falling_force_is_as_uncertain_as_a_rising_one() -> None:
