@@ -11,6 +11,7 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import faulthandler
+import gc
 import signal
 import sys
 import tempfile
@@ -48,6 +49,9 @@ hypothesis.settings.register_profile(
     "busy", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], database=None
 )
 hypothesis.settings.load_profile("busy")
+
+# Python looks for dead cycles after every 700 objects, and numba and pytest keep millions alive.
+gc.set_threshold(100_000, 20, 20)
 
 # Before anything imports rclpy: nodes of this process, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()
