@@ -1,7 +1,7 @@
 """What every test shares: `import rig`, a ROS domain of its own, logs and kernels that stay out of the home folder.
 
-A test that hangs fails after ten minutes, the longest files of tests begin first, and the end of a run shows the
-seconds of every folder.
+A test that hangs fails after ten minutes, the longest files of tests begin first, those that wait for nodes run beside
+those that compute, and the end of a run shows the seconds of every folder.
 """
 
 import os
@@ -16,7 +16,7 @@ import signal
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +39,9 @@ LONGEST = (
     "test_rig_recordings.py", "test_rig_effects.py", "shooting/test_refit_added.py", "diagnose/test_adding.py",
     "diagnose/test_timing.py", "reading/test_plausible.py",
 )  # fmt: skip
+
+# Folders whose tests mostly wait, for nodes and pages: three of their files at once would leave the processors idle.
+WAITING = ("ros", "workbench", "urdf")
 
 # A script's `make test &`, nohup and cron let their children ignore SIGINT: tests that send one would wait for ever.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -69,8 +72,17 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {path: k for k, path in enumerate(in_turn(list(dict.fromkeys(item.path for item in items))))}
+    items.sort(key=lambda item: place[item.path])
+
+
+def in_turn(files: Sequence[Path]) -> list[Path]:
+    """Files of tests: the longest first, then those that wait, spread evenly over the others."""
     rank = {TEST / name: k for k, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: rank.get(item.path, len(rank)))
+    left = {waits: [path for path in files if path not in rank and (path.parent.name in WAITING) == waits]
+            for waits in (True, False)}  # fmt: skip
+    spread = sorted(((k + 0.5) / len(some), path) for some in left.values() for k, path in enumerate(some))
+    return [*sorted((path for path in files if path in rank), key=rank.__getitem__), *(path for _, path in spread)]
 
 
 @pytest.hookimpl(hookwrapper=True)
