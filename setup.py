@@ -34,6 +34,7 @@ DOCS = ["sphinx>=7", "myst-parser>=2", "furo"]  # the manual
 PEERS = ["pysindy>=2.1"]  # a method that benchmarks/bench_peers.py compares with
 TEST = ["pytest>=7.4", "hypothesis>=6.80", "playwright", "xacro>=2.0", "nbclient>=0.8", "ipykernel>=6"]
 TEST += ["fmpy>=0.3.20", "rumoca>=0.10"]  # importers of what pneumo export writes
+TEST += ["rosdep>=0.25"]  # it reads package.xml
 DEV = ["ruff>=0.9", "mypy>=1.13", "types-PyYAML", "pytest-xdist>=3"]
 BUILD = ["setuptools>=64", "wheel", "colcon-core", "colcon-ros"]
 

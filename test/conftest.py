@@ -1,7 +1,7 @@
 """What every test shares: `import rig`, a ROS domain of its own, logs and kernels that stay out of the home folder.
 
-A test that hangs fails after ten minutes, the longest files of tests begin first, and the end of a run shows the
-seconds of every folder.
+A test that hangs fails after ten minutes, the longest files of tests begin first, those that wait for nodes run beside
+those that compute, and the end of a run shows the seconds of every folder.
 """
 
 import os
@@ -11,11 +11,12 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import faulthandler
+import gc
 import signal
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,9 @@ LONGEST = (
     "diagnose/test_timing.py", "reading/test_plausible.py",
 )  # fmt: skip
 
+# Folders whose tests mostly wait, for nodes and pages: three of their files at once would leave the processors idle.
+WAITING = ("ros", "workbench", "urdf")
+
 # A script's `make test &`, nohup and cron let their children ignore SIGINT: tests that send one would wait for ever.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -48,6 +52,9 @@ hypothesis.settings.register_profile(
     "busy", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow], database=None
 )
 hypothesis.settings.load_profile("busy")
+
+# Python looks for dead cycles after every 700 objects, and numba and pytest keep millions alive.
+gc.set_threshold(100_000, 20, 20)
 
 # Before anything imports rclpy: nodes of this process, here and in child processes, see each other and nobody else.
 DOMAIN = Domain()
@@ -65,8 +72,17 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    place = {path: k for k, path in enumerate(in_turn(list(dict.fromkeys(item.path for item in items))))}
+    items.sort(key=lambda item: place[item.path])
+
+
+def in_turn(files: Sequence[Path]) -> list[Path]:
+    """Files of tests: the longest first, then those that wait, spread evenly over the others."""
     rank = {TEST / name: k for k, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: rank.get(item.path, len(rank)))
+    left = {waits: [path for path in files if path not in rank and (path.parent.name in WAITING) == waits]
+            for waits in (True, False)}  # fmt: skip
+    spread = sorted(((k + 0.5) / len(some), path) for some in left.values() for k, path in enumerate(some))
+    return [*sorted((path for path in files if path in rank), key=rank.__getitem__), *(path for _, path in spread)]
 
 
 @pytest.hookimpl(hookwrapper=True)

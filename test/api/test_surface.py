@@ -30,7 +30,7 @@ def rig() -> pn.Model:
 def runs(rig: pn.Model) -> dict[str, pn.Recording]:
     drives = {"slow": "sine:3,0.5", "fast": "sine:5,0.9", "hold": "sine:4,0.7"}
     return {
-        name: pn.simulate(rig, drive, seconds=6, noise=NOISE, seed=k, name=name)
+        name: pn.simulate(rig, drive, seconds=4, noise=NOISE, seed=k, name=name)
         for k, (name, drive) in enumerate(drives.items())
     }
 
@@ -104,7 +104,7 @@ def test_a_simulation_saved_and_read_is_the_same(tmp_path: Path, runs: dict[str,
     assert {*again.signals} == {*runs["slow"].signals}
     for name, values in runs["slow"].signals.items():
         assert again.signals[name] == pytest.approx(values, rel=1e-12), name
-    assert str(again).startswith("slow: 6 s at 1000 Hz, 6001 samples of position, ")
+    assert str(again).startswith("slow: 4 s at 1000 Hz, 4001 samples of position, ")
 
 
 def test_voltages_and_recordings_drive_as_formulas_do(rig: pn.Model) -> None:

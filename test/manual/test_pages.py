@@ -9,7 +9,7 @@ import pytest
 import yaml
 from manual.beside import ANSWERS, BESIDE
 from manual.pages import PAGES, ROOT, blocks, heading_names, inline, links, statements, worded_links, words
-from manual.unrun import ELSEWHERE, MORE, SERVING, UNRUN, UNRUN_CODE
+from manual.unrun import ELSEWHERE, MORE, SERVING, UNRUN_CODE
 
 from pneumo_ros.command.main import VERBS, _verb, verb_parser
 
@@ -77,14 +77,14 @@ def test_there_is_much_to_follow() -> None:
     assert any("\nimport pneumo_ros" in one for one in typed), "a statement of several lines"
 
 
-@pytest.mark.parametrize("table", [ELSEWHERE, UNRUN, MORE, SERVING, BESIDE, ANSWERS])
+@pytest.mark.parametrize("table", [ELSEWHERE, MORE, SERVING, BESIDE, ANSWERS])
 def test_exceptions_are_those_of_a_statement_that_exists(table: dict[str, str]) -> None:
     typed = [one.text for page in PAGES for one in statements(page)]
     assert not [pattern for pattern in table if not any(re.match(pattern, one) for one in typed)]
 
 
 def test_reasons_name_tests_that_exist() -> None:
-    named = re.findall(r"test/[\w/.]+\w", " ".join([*ELSEWHERE.values(), *UNRUN.values()]))
+    named = re.findall(r"test/[\w/.]+\w", " ".join(ELSEWHERE.values()))
     assert len(named) >= 3
     assert not [name for name in named if not (ROOT / name).exists()]
 

@@ -1,4 +1,4 @@
-"""Which statements of the pages the checks do not run, each with the reason; and how long ones are shortened."""
+"""Which statements of the pages another test runs, and how long ones are shortened."""
 
 import re
 import sys
@@ -9,9 +9,7 @@ ELSEWHERE = {  # pattern of a statement that is not run here, but by another tes
     r"make demo$|pneumo demo$": "test/command/test_demo.py runs it",
     r"make supply": "a stage of make check",
     r"python3 -m colcon build|\. install/setup.sh": "test/packaging/test_installs.py builds with colcon and sources it",
-}
-UNRUN = {  # pattern of a statement -> why no test runs it, and what follows it instead
-    r"rosdep ": "reads an index on the network; test/packaging compares package.xml with what is imported",
+    r"rosdep ": "test/packaging/test_rosdep.py simulates it, with databases of its own",
 }
 UNRUN_CODE = {  # page -> languages of blocks that are no program
     "commissioning.md": {"text": "what the command prints"},

@@ -25,10 +25,17 @@ SIZES = {
 ON_RIG = {OFFSET: 12e3, GAIN: 0.015, DELAY: 8e-3, "backlash": 2.5e-4}  # the rig's play is a half width
 
 
-def with_effect(model: Model, effect: str, **values: float) -> Model:
-    """The model with a sensor effect of the given values, else of none."""
+def alone(model: Model, effect: str, **values: float) -> Model:
+    """The model with a sensor effect of the given values."""
     given = {f"{effect}.{key}": value for key, value in values.items()}
     return model.with_effects([*model.effects, effect], given)
+
+
+def with_effect(model: Model, effect: str, **values: float) -> Model:
+    """The model with a sensor effect of the given values, by one kernel for all of them: the others are neutral."""
+    for other, sizes in SIZES.items():
+        model = alone(model, other, **dict.fromkeys(sizes, 0.0))
+    return model.with_parameters({f"{effect}.{key}": value for key, value in values.items()})
 
 
 @lru_cache(maxsize=8)
@@ -99,9 +106,7 @@ def test_true_sensors_give_the_frame_back_and_drive_as_follow_does() -> None:
 
 def test_neutral_sensors_correct_nothing() -> None:
     base, _, run = own("steps", seconds=3.0)
-    model = base
-    for effect, values in SIZES.items():
-        model = with_effect(model, effect, **dict.fromkeys(values, 0.0))
+    model = with_effect(base, OFFSET)
     frame = run.smoothed.frame
     np.testing.assert_array_equal(corrected(model, frame, run), frame)
 
@@ -143,9 +148,9 @@ def test_sensor_effects_are_refitted_from_nothing(effect: str) -> None:
 def test_the_prior_on_starts_is_on_what_sensors_read() -> None:
     """A guess that assumes ideal sensors does not pull an offset, refitted later, towards zero."""
     base, _, run = own("steps", seconds=3.0)
-    neutral = with_effect(base, OFFSET, offset_a=0.0, offset_b=0.0)
+    neutral = alone(base, OFFSET, offset_a=0.0, offset_b=0.0)
     segments = cut(neutral, [run], 0.5)
-    shifted = with_effect(base, OFFSET, offset_a=5e3, offset_b=-2e3)
+    shifted = alone(base, OFFSET, offset_a=5e3, offset_b=-2e3)
     np.testing.assert_allclose(segments.seated(shifted) - segments.guess, [[0.0, 0.0, -5e3, 2e3, 0.0]] * 5, atol=1e-6)
     np.testing.assert_allclose(segments.from_guess(shifted, segments.seated(shifted)), 0.0, atol=1e-9)
     away = segments.from_guess(shifted, segments.guess)[0]
@@ -166,7 +171,7 @@ def test_time_restarts_in_every_recording() -> None:
 def test_a_lane_that_leaves_the_finite_numbers_comes_back_as_it_is() -> None:
     """Smoothing its correction raised a ValueError, and one wild parameter ended a whole diagnosis."""
     model, truth, run = own("steps", seconds=1.0)
-    late = with_effect(model, DELAY, **SIZES[DELAY])
+    late = alone(model, DELAY, **SIZES[DELAY])
     wild = np.zeros((1, len(run), len(late.states)))
     wild[0, -1, late.states.index("behind")] = np.inf
     parameters, enough = late.values[None], (1e-9, 1e-2, 1e-2)

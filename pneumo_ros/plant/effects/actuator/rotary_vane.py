@@ -1,7 +1,8 @@
 """A vane that turns in a round casing, with air on both of its sides."""
 
 from pneumo_ros.plant.actuator import Actuator
-from pneumo_ros.plant.effect import Parameter, State
+from pneumo_ros.plant.effect import Parameter
+from pneumo_ros.plant.effects.actuator.chambers import Chambers
 
 
 class RotaryVane(Actuator):
@@ -14,24 +15,12 @@ class RotaryVane(Actuator):
     volume_a = Parameter(5e-4, "m3", "volume V_a0 of chamber a and its line at mid stroke", low=1e-8, high=10.0)
     volume_b = Parameter(5e-4, "m3", "volume V_b0 of chamber b and its line at mid stroke", low=1e-8, high=10.0)
 
-    p_a = State("Pa", "pressure in chamber a, absolute", initial=1e5)
-    p_b = State("Pa", "pressure in chamber b, absolute", initial=1e5)
+    p_a, p_b = Chambers.p_a, Chambers.p_b
 
     coordinate = "rotation"
     source = "paper Eqs. 3-4 over an angle; Beater 2007, Pneumatic Drives (rotary actuators)"
 
-    def equations(
-        y, v, p_a, p_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b, heat_a, heat_b,
-        area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio,
-    ):  # fmt: skip
-        gamma = heat_capacity_ratio
-        R_T = gas_constant * temperature
-        V_a = volume_a + added_volume_a + area_a * y
-        V_b = volume_b + added_volume_b - area_b * y
-        der_p_a = (gamma * (R_T * (port_flow_a + flow_a) - area_a * v * p_a) + (gamma - 1.0) * heat_a) / V_a
-        der_p_b = (gamma * (R_T * (port_flow_b + flow_b) + area_b * v * p_b) + (gamma - 1.0) * heat_b) / V_b
-        drive = area_a * p_a - area_b * p_b
-        return der_p_a, der_p_b, drive
+    equations = Chambers.equations
 
     def caution(piston__area_a, piston__area_b):
         if abs(piston__area_a - piston__area_b) > 0.1 * max(piston__area_a, piston__area_b):
