@@ -11,6 +11,7 @@ from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
+from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.model import STEP
@@ -159,6 +160,11 @@ def reads_wrong(effect: type[Effect]) -> bool:
     return any(signal in SENSED for function in effect.functions.values() for signal in function.writes)
 
 
+def read_from(effect: type[Effect]) -> frozenset[str]:
+    """What the readings of an effect's sensors depend on: not what else it does, as a play before the load."""
+    return readings_from(effect, SENSED)
+
+
 def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     """Parameter vectors (variants, parameters) in groups of equal sensors: the first of each group, and the groups.
 
@@ -168,11 +174,12 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     columns: list[int] = []
     keys = [name.partition(".")[2] for name in model.parameters]
     for effect in filter(reads_wrong, model.composition.effects):
-        reads = {name for function in effect.functions.values() for name in function.reads}
+        reads = read_from(effect)
         others = reads - frame - set(effect.states) - set(effect.parameters)
         if not others <= {*keys} - {*SIGNALS, *model.states}:
             return np.arange(len(parameters)), np.arange(len(parameters))
-        columns += [k for k, name in enumerate(model.parameters) if name.partition(".")[0] == effect.name]
+        own = [f"{effect.name}.{key}" for key in effect.parameters if key in reads]
+        columns += [k for k, name in enumerate(model.parameters) if name in own]
         columns += [k for k, key in enumerate(keys) if key in others]
     _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
     return first, np.ravel(group)
@@ -183,7 +190,8 @@ def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
     for effect in filter(reads_wrong, model.composition.effects):
-        fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items()]
+        own = read_from(effect)
+        fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items() if key in own]
         acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
         found |= np.any(acts, axis=0) if acts else True
     return found

@@ -37,6 +37,19 @@ def commanding_parameters(
     return frozenset(name for name in dotted if {name, name.partition(".")[2]} & names)
 
 
+def readings_from(effect: type[Effect], readings: Collection[str]) -> frozenset[str]:
+    """Names of signals, states and parameters from which an effect computes `readings`, its own states followed up."""
+    found, todo = set[str](), list(readings)
+    while todo:  # each name once
+        name = todo.pop()
+        for function in effect.functions.values():
+            for written in {name, f"der_{name}", f"rate_{name}"} & set(function.writes):
+                new = sources(function, written) - found
+                found |= new
+                todo += new & effect.states.keys()
+    return frozenset(found)
+
+
 def memories(effects: Sequence[type[Effect]]) -> frozenset[str]:
     """The states that an effect sets once per step: levels and clocks, which move in jumps."""
     return frozenset(name for effect in effects if (f := effect.functions.get("advance")) for name in f.writes)

@@ -3,7 +3,7 @@
 import numpy as np
 from identify.making import own
 
-from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of
+from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of, sensing
 from pneumo_ros.plant import Model
 
 SENSORS = ("position_sensor_delay", "pressure_sensor_offset")
@@ -31,15 +31,28 @@ def test_variants_with_the_same_sensors_are_one_group() -> None:
     assert len(set(group)) == 3
 
 
-def test_a_play_before_the_load_reads_the_mass_and_groups_sensors_all_the_same() -> None:
-    model = LATE.with_effects([*LATE.effects, "backlash"], {"backlash.load_share": 0.2})
-    rows = variants(model)
-    heavy = rows[:1].copy()
-    heavy[0, list(model.parameters).index("piston.mass")] *= 1.1
-    _, group = alike_sensors(model, np.concatenate([rows, heavy]))
+def test_a_play_before_the_load_leaves_the_sensors_alike() -> None:
+    """What lies behind it, and the mass that it reads, change no reading; the play before the sensor does."""
+    model = LATE.with_effects([*LATE.effects, "backlash"], {"backlash.gap": 0.0, "backlash.load_share": 0.2})
+    names, rows = list(model.parameters), np.tile(model.values, (4, 1))
+    rows[1, names.index("piston.mass")] *= 1.1
+    rows[2, names.index("backlash.load_share")] *= 1.1
+    rows[3, names.index("backlash.gap")] = 1e-4
+    _, group = alike_sensors(model, rows)
     assert group[0] == group[1] == group[2]
-    assert group[3] == group[4]
-    assert len(set(group)) == 4
+    assert group[3] != group[0]
+
+
+def test_only_a_play_before_the_sensor_asks_for_corrected_states() -> None:
+    model = MODEL.with_effects([*MODEL.effects, "backlash"])
+    names, rows = list(model.parameters), np.tile(model.values, (4, 1))
+    rows[:, [names.index("backlash.gap"), names.index("backlash.load_share")]] = [
+        [0.0, 0.0],
+        [0.0, 0.2],
+        [1e-4, 0.0],
+        [1e-4, 0.2],
+    ]
+    assert sensing(model, rows).tolist() == [False, False, True, True]
 
 
 def test_a_variant_gives_the_same_alone_and_beside_others() -> None:

@@ -5,7 +5,7 @@ import pytest
 from plant.catalogue import AXIS
 
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.commanded import sources
+from pneumo_ros.plant.commanded import readings_from, sources
 from pneumo_ros.plant.effect import Effect, Parameter, State, parse_function
 from pneumo_ros.plant.library import Library
 
@@ -77,6 +77,13 @@ def test_what_a_result_is_computed_from() -> None:
     assert sources(function, "first") == {"voltage", "other"}
     assert sources(function, "second") == {"p_a"}
     assert sources(function, "total") == {"share"}
+
+
+def test_what_a_reading_is_computed_from() -> None:
+    """The play before the sensor by its own state, and nothing of the load behind another play."""
+    play = AXIS.library.find("backlash")
+    assert readings_from(play, ["y_measured"]) == {"y_measured", "play", "v", "gap"}
+    assert readings_from(play, ["p_a_measured"]) == set()
 
 
 def test_a_state_of_ones_own_is_found_by_its_source() -> None:
