@@ -1,5 +1,6 @@
 """The life of a process of nodes: start, spin in a thread, end with exit code 0 on SIGINT and SIGTERM."""
 
+import faulthandler
 import gc
 import sys
 import threading
@@ -22,6 +23,9 @@ try:  # twice as fast; part of rclpy since Kilted
 except ImportError:
     EventsExecutor = None
 
+# s in which the middleware must let nodes go: Fast DDS 3.2 may wait for its own discovery thread for ever, at full load
+# and with the GIL, so that no signal is handled
+LETS_GO = 60.0
 POLL = 0.5  # s; EventsExecutor.spin() without a limit hangs in some builds
 
 
@@ -70,7 +74,8 @@ def run(make: Callable[[], Sequence[AxisNode]], name: str, ros_args: Sequence[st
     """Run the nodes that `make` builds until SIGINT or SIGTERM; returns the exit code of the process.
 
     `name` precedes messages; `ros_args` are the arguments rclpy reads, None for those of the command line. A
-    PneumoError is reported in one line and gives its exit code; anything else with its traceback, and gives 1.
+    PneumoError is reported in one line and gives its exit code; anything else with its traceback, and gives 1, as does
+    a middleware that does not let the nodes go in LETS_GO: all they had to do is done by then.
     """
     listen_for_signals()
     try:
@@ -84,6 +89,7 @@ def run(make: Callable[[], Sequence[AxisNode]], name: str, ros_args: Sequence[st
         return 1
     finally:
         rclpy.try_shutdown()
+        faulthandler.cancel_dump_traceback_later()
     return 0
 
 
@@ -113,6 +119,7 @@ def _live(make: Callable[[], Sequence[AxisNode]]) -> None:
             for node in nodes:
                 node.finish()
     finally:
+        faulthandler.dump_traceback_later(LETS_GO, exit=True)  # in C: it needs no GIL
         for node in nodes:
             node.destroy_node()
     if spinner.failure is not None:
