@@ -9,7 +9,7 @@ from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
-from pneumo_ros.diagnose.score import MARGIN, Score, Scoring, occam, prior_gain, surprise
+from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, moved, occam, prior_gain, surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -33,12 +33,14 @@ def judged(
     if not hypotheses:
         return found
     scoring.measure(base.everything, nothing.residual, held.residual)
-    without, alone = scoring.best(base.everything, fits, (nothing.residual, held.residual, nothing.shift))
-    for h, r in zip(hypotheses, residuals, strict=True):
-        model = base.everything.with_parameters(h.values)
-        gained, beside = scoring.best(model, fits, (h.residual, r, h.shift))
-        gained = gained - without
-        strained, prior = surprise(base, alone[2]), prior_gain(base, alone[2], beside[2], h)
+    alone = scoring.best(base.everything, fits, [(nothing.residual, held.residual, nothing.shift)])
+    reached = [_best(scoring, fits, h, r, alone) for h, r in zip(hypotheses, residuals, strict=True)]
+    # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
+    ends = [one for each in (alone, *reached) for one in (each.train, each.whole)]
+    alone = scoring.best(base.everything, fits, [moved(alone.train, fits, end[2] - alone.train[2]) for end in ends])
+    for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
+        gained = beside.evidence - alone.evidence
+        strained, prior = surprise(base, alone.train[2]), prior_gain(base, alone.train[2], beside.train[2], h)
         acts = acting(held.residual, r)
         found.append(
             Candidate(
@@ -57,6 +59,12 @@ def judged(
             )
         )
     return best_forms(found)
+
+
+def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best) -> Best:
+    """`Scoring.best` of a hypothesis, from its own base parameters or from those that are best without it."""
+    model, own = fits[0].everything.with_parameters(h.values), (h.residual, held, h.shift)
+    return scoring.best(model, fits, [own, *(moved(own, fits, end[2] - h.shift) for end in (alone.train, alone.whole))])
 
 
 def best_forms(candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -61,6 +61,15 @@ class Score:
 Fit = tuple[Array, Array, Array]  # residuals of training and held-out runs over noise, shift of base parameters
 
 
+@dataclass(frozen=True)
+class Best:
+    """Log evidence (2,) of training and held-out runs; the fits that are best for the training runs, and for all."""
+
+    evidence: Array
+    train: Fit
+    whole: Fit
+
+
 def moved(fit: Fit, fits: tuple[BaseFit, BaseFit], step: Array) -> Fit:
     """A fit with its base parameters moved by a step (free,), by the slopes of training and held-out residuals."""
     return fit[0] + fits[0].slopes @ step, fit[1] + fits[1].slopes @ step, fit[2] + step
@@ -92,20 +101,25 @@ class Scoring:
         levels = [part.noise_of(model) for part in parts]
         return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
 
-    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> tuple[Array, Fit]:
-        """The log evidence (2,) of a fit, its base parameters moved to where the training runs' evidence is largest.
+    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit]) -> "Best":
+        """The log evidence of a fit, its base parameters moved to where that of the training runs is largest.
 
         `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little
         of what parameters explain, which the correlation of the discrepancy makes worth many nats. The evidence of the
         held-out runs is ln p(all) - ln p(training), base parameters at their best for each: what training hardly
         determines, such as friction at a place that it passed once, must not decide there.
-        """
-        alone, found, fitted = self._climb(model, fits, fitted, parts=1)
-        together, _, _ = self._climb(model, fits, fitted, parts=2)
-        return np.array([found[0], together - alone]), fitted
 
-    def _climb(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> tuple[float, Array, Fit]:
-        """The fit whose base parameters are best for training runs, or for both `parts`.
+        `starts`: one fit or several that differ in base parameters. A slow and a fast discrepancy have largest evidence
+        at different base parameters, tens of nats apart, and a climb ends at that which is nearer.
+        """
+        alone, found, fitted = self._climb(model, fits, starts, parts=1)
+        together, _, whole = self._climb(model, fits, [fitted, *starts], parts=2)
+        return Best(np.array([found[0], together - alone]), fitted, whole)
+
+    def _climb(
+        self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit], parts: int
+    ) -> tuple[float, Array, Fit]:
+        """The fit whose base parameters are best for training runs, or for both `parts`; from the best of `starts`.
 
         Returns ln p with the priors of the base parameters, the log evidence (parts,) without them, and the fit.
         """
@@ -114,7 +128,7 @@ class Scoring:
             found = self.evidence(model, *one[:parts])
             return float(found.sum()) - strain(one[2] + fits[0].offset), found, one
 
-        best = valued(fitted)
+        best = max(map(valued, starts), key=lambda one: one[0])
         for _ in range(STEPS):
             step = self._step(model, fits, best[2], parts)
             tried = max((valued(moved(best[2], fits, share * step)) for share in SHARES), key=lambda one: one[0])

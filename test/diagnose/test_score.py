@@ -209,11 +209,26 @@ def test_base_parameters_are_fitted_with_the_correlation_of_what_no_model_has(se
     plain = -np.linalg.solve(slopes.T @ slopes + np.eye(1), slopes.T @ residual)
     scoring, fits = Scoring(part, part), (base, base)
     begin = moved((residual, residual, np.zeros(1)), fits, plain)
-    found, (train, held, shift) = scoring.best(MODEL, fits, begin)
+    best = scoring.best(MODEL, fits, [begin])
+    found, (train, held, shift) = best.evidence, best.train
     assert abs(shift[0] + 0.5) < 0.5 * abs(plain[0] + 0.5)
     assert float(found[0]) > float(scoring.evidence(MODEL, *begin[:2])[0]) + 50.0
     assert train == pytest.approx(residual + slopes @ shift)
     assert held == pytest.approx(train)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_of_several_starts_the_best_counts(seed: int) -> None:
+    """Windows of two kinds ask for a parameter 30 deviations apart: a climb ends at the kind that is nearer."""
+    part, slopes = evidence(name="breakaway"), np.ones((N, 1))
+    few = np.random.default_rng(seed).random(N) < 0.3
+    base = BaseFit(MODEL, MODEL, ("a",), np.ones(1), np.zeros(1), part, noise(0), slopes)
+    scoring, fits = Scoring(part, part), (base, base)
+    near = noise(seed, scale=0.3) + 3.0 * few, noise(seed + 1, scale=0.3) + 3.0 * few, np.zeros(1)
+    far = moved(near, fits, np.array([-3.0]))
+    one, other, both = (scoring.best(MODEL, fits, starts) for starts in ([near], [far], [far, near]))
+    assert float(one.evidence.sum()) > float(other.evidence.sum()) + 20.0
+    assert both.evidence == pytest.approx(one.evidence)
 
 
 def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> None:
@@ -227,7 +242,7 @@ def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> N
     scoring, fits = Scoring(part, part), (train_fit, held_fit)
     without = noise(1), noise(2), np.zeros(1)
     chance = without[0] - 0.5 * once[:, 0], without[1], np.zeros(1)  # an effect that meets the few windows by chance
-    alone, beside = (scoring.best(MODEL, fits, one)[0] for one in (without, chance))
+    alone, beside = (scoring.best(MODEL, fits, [one]).evidence for one in (without, chance))
     plain = (
         scoring.evidence(MODEL, *moved(chance, fits, np.array([0.5]))[:2])[1] - scoring.evidence(MODEL, *without[:2])[1]
     )
