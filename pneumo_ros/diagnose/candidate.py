@@ -56,10 +56,11 @@ class Candidate:
     def undecided(self) -> bool:
         """Whether the recordings speak for it, but not enough, and nothing else is objected.
 
-        Nor that it removes little: what is left may be something else, which neither shows nor excludes it.
+        Nor that it removes little: what is left may be something else, which neither shows nor excludes it. Held-out
+        recordings are against it if they lose more than all recordings together gain.
         """
-        enough = replace(self, score=Score(MARGIN - self.score.held, self.score.held), share=1.0)
-        return 0.0 < self.score.nats < MARGIN and not enough.objections
+        small, against = 0.0 < self.score.nats < MARGIN, self.score.held <= -self.score.nats
+        return small and not against and not replace(self, score=Score(MARGIN, MARGIN), share=1.0).objections
 
     @property
     def objections(self) -> tuple[str, ...]:

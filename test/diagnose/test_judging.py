@@ -119,7 +119,8 @@ def test_a_candidate_is_refused_for_one_reason_each(changed: dict[str, Any], why
         ({"score": Score(7.7, -0.1), "known": 1.1 * MARGIN}, True),
         ({"score": Score(5.0, 4.0)}, False),  # it is enough
         ({"score": Score(-5.0, 4.0)}, False),  # they speak against it
-        ({"score": Score(5.0, -2.0)}, False),
+        ({"score": Score(5.0, -2.0)}, True),
+        ({"score": Score(5.0, -2.6)}, False),  # held-out recordings lose more than all together gain
         ({"score": Score(5.0, 2.0), "share": 0.2}, True),  # what is left may be something else
         ({"score": Score(5.0, 2.0), "refused": "it is known"}, False),
     ],
