@@ -28,6 +28,7 @@ from pneumo_ros.diagnose.prediction import (
 )
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
+from pneumo_ros.diagnose.score import occam
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
@@ -296,7 +297,7 @@ class Search:
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
         short = shortlist(part, bare, promising or screened[:SHOWN_ANYWAY], SHORTLIST)
-        fitted = sorted(refine(part, short), key=lambda h: -h.likelihood)
+        fitted = sorted(refine(part, short), key=lambda h: occam(part, h) - h.likelihood)
         return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
 
     def judged(
