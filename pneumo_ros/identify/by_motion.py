@@ -6,6 +6,11 @@ fitted together by multiple shooting instead, in segments so short that few hold
 the segments may end in neighbouring minima, where a breakaway is predicted a little early or late: half their
 difference counts as uncertainty.
 
+The bristle stiffness is often known within its power of ten alone, and presliding may lie within the sensor's noise.
+Unless the machine file states how uncertain it is, the halves start at a third and at three times its value, with
+priors as wide as that value. Its cost has several minima, so that half the distance between the farthest of all fits
+counts as its uncertainty, those that were replaced included.
+
 A position loop that follows a goal has no constant command either. It corrects what is predicted wrongly, so that its
 segments may be as long as the predictions that are judged: in short ones a small servo hardly moves.
 """
@@ -32,6 +37,9 @@ SEGMENT, SAMPLES = 0.1, 20  # s and samples: a segment is at least as long as bo
 LOOP_SEGMENT, FEWEST = 1.0, 10  # s, of a position loop; recordings too short for so many segments have shorter ones
 MOST = 140  # segments: more narrow intervals slowly and take proportionally longer
 _DETERMINED = 0.5  # of the prior deviation: a parameter that is known no better is not determined
+BRISTLE = "lugre_friction.bristle_stiffness"
+APART = 3.0  # the halves start at the bristle stiffness times and over this factor
+_TOLD_APART = 1.92  # cost: half the 95 % point of chi squared with one degree; data do not tell what differs by less
 # not found by motion: a scale of the opening that the coefficients take in, and a share that is chosen
 _LEFT = ("arctan_flow.voltage_gain", "choked_flow.blend")
 
@@ -64,7 +72,7 @@ def parameters_of(model: Model, wanted: Sequence[str]) -> tuple[str, ...]:
         for name in default_free(model)
         if name not in without
         and name.partition(".")[0] not in without
-        and (not name.startswith("lugre_friction.") or name in wanted or name.endswith("bristle_stiffness"))
+        and (not name.startswith("lugre_friction.") or name in wanted or name == BRISTLE)
     )
 
 
@@ -76,9 +84,10 @@ def fit_by_motion(
     segments = cut(model, alike, max(_length(model, alike), SAMPLES * alike[0].sample_time))
     rows = np.unique(np.linspace(0, len(segments) - 1, min(MOST, len(segments))).round().astype(np.int64))
     parts = [segments.pick(rows[k::2]) for k in range(2)]
-    halves = _halves(model, parts, parameters_of(model, wanted), tell)
+    halves, fits = _halves(model, parts, parameters_of(model, wanted), tell)
     free = tuple(halves[0].estimates)
-    found = {name: _found(model, name, halves, len(rows)) for name in free}
+    spread = {BRISTLE: _spread(fits)} if _unstated(model, free) else {}
+    found = {name: _found(model, name, halves, len(rows), spread.get(name, 0.0)) for name in free}
     values = {name: one.value for name, one in found.items()}
     unknown = {name: "the recordings do not tell it from the others" for name, one in found.items() if not one.interval}
     noise = 0.5 * sum(_measured(part) for part in parts)
@@ -96,19 +105,46 @@ def _length(model: Model, runs: Sequence[Run]) -> float:
 
 def _halves(
     model: Model, parts: Sequence[Segments], free: Sequence[str], tell: Callable[[float, str], None]
-) -> list[Refit]:
-    """A refit of each half; the one that fits worse is tried once more from the values of the other."""
+) -> tuple[list[Refit], list[Refit]]:
+    """A refit of each half, and all fits; the half that fits worse is tried once more from the values of the other."""
+    unstated = _unstated(model, free)
+    priors = {BRISTLE: model[BRISTLE]} if unstated else {}
 
     def fit(start: Model, part: Segments, share: float) -> Refit:
-        return refit_segments(start, part, free, {}, progress=lambda own, text: tell(share + own / 3.0, text))
+        return refit_segments(start, part, free, priors, progress=lambda own, text: tell(share + own / 3.0, text))
 
-    halves = [fit(model, part, k / 3.0) for k, part in enumerate(parts)]
+    halves = [fit(one, part, k / 3.0) for k, (one, part) in enumerate(zip(_begun(model, unstated), parts, strict=True))]
     losses = [half.costs[-1] / _measured(part) for half, part in zip(halves, parts, strict=True)]
     worse = int(np.argmax(losses))
     again = fit(halves[1 - worse].model, parts[worse], 2.0 / 3.0)
-    if again.costs[-1] < halves[worse].costs[-1]:
-        halves[worse] = again
-    return halves
+    # the prior of the new fit is about the values of the other half, which is no evidence that they agree
+    if _by_data(again) < _by_data(halves[worse]) - _TOLD_APART:
+        return [again if k == worse else half for k, half in enumerate(halves)], [*halves, again]
+    return halves, [*halves, again]
+
+
+def _unstated(model: Model, free: Sequence[str]) -> bool:
+    """Whether the bristle stiffness is fitted without a stated uncertainty."""
+    return BRISTLE in free and BRISTLE not in model.uncertainty
+
+
+def _spread(fits: Sequence[Refit]) -> float:
+    """Half the distance between the farthest bristle stiffnesses of the fits, in its unit."""
+    return 0.5 * float(np.ptp([fit.estimates[BRISTLE].value for fit in fits]))
+
+
+def _begun(model: Model, apart: bool) -> tuple[Model, Model]:
+    """Where the halves start; `apart`: with different bristle stiffnesses, within what the parameter allows."""
+    if not apart:
+        return model, model
+    spec = model.specification(BRISTLE)
+    low, high = max(model[BRISTLE] / APART, spec.low), min(model[BRISTLE] * APART, spec.high)
+    return model.with_parameters({BRISTLE: low}), model.with_parameters({BRISTLE: high})
+
+
+def _by_data(half: Refit) -> float:
+    """The cost of a fit without the share of its priors."""
+    return half.costs[-1] - 0.5 * sum(((one.value - one.before) / one.prior) ** 2 for one in half.estimates.values())
 
 
 def _measured(part: Segments) -> int:
@@ -116,11 +152,11 @@ def _measured(part: Segments) -> int:
     return int(np.sum(part.weight > 0.0))
 
 
-def _found(model: Model, name: str, halves: Sequence[Refit], segments: int) -> Found:
-    """Mean of both halves; its deviation is theirs, or half their difference."""
+def _found(model: Model, name: str, halves: Sequence[Refit], segments: int, least: float) -> Found:
+    """Mean of both halves; its deviation is theirs, or half their difference, or the `least`."""
     both = [half.estimates[name] for half in halves]
     value, own = 0.5 * (both[0].value + both[1].value), 0.5 * math.hypot(both[0].std, both[1].std)
-    std = max(own, abs(both[0].value - both[1].value) / 2.0)
+    std = max(own, abs(both[0].value - both[1].value) / 2.0, least)
     unit = model.specification(name).unit
     if not std < _DETERMINED * both[0].prior:
         return Found(model[name], None, unit, model[name], "not determined: no motion here shows it")

@@ -1,7 +1,10 @@
 """Machines with on/off valves and regulators are identified from any motion."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
-from identify.jogging import SHEETS, jogged, sheet, truth
+from identify.jogging import SHEETS, jogged, sheet, true_and_seen, truth
 from plant.catalogue import AXIS
 
 from pneumo_ros.identify import by_motion
@@ -41,6 +44,25 @@ def test_regulators_from_three_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, share in FOUND.items():
         assert found.parameters[name].value == pytest.approx(real[name], rel=share), name
     assert found.parameters["lugre_friction.coulomb_friction"].interval is not None
+
+
+@pytest.mark.parametrize("true", [2e4, 2e6])
+@pytest.mark.parametrize("factor", [1.0 / 3.0, 3.0])
+def test_a_bristle_stiffness_holds_whatever_its_start(
+    true: float, factor: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Presliding of 2 mm and of 20 um below 1 mm of noise, from a third and three times the truth."""
+    model = sheet("regulators")
+    real = truth(model).with_parameters({by_motion.BRISTLE: true})
+    known = {name: model.uncertainty[name] for name in FOUND if name in model.uncertainty}
+    start = {name: model[name] for name in known} | {by_motion.BRISTLE: factor * true}
+    monkeypatch.setattr(by_motion, "parameters_of", lambda *_: (*known, by_motion.BRISTLE))
+    states, run = true_and_seen(real, "jog", 3.0, 0.4)
+    run = replace(run, position=states[:, 0] + 1e-3 * np.random.default_rng(3).normal(size=len(states)))
+    off = real.with_parameters(start).with_uncertainty(known)
+    found = fit_by_motion(off, [run], FRICTION, lambda share, text: None).parameters[by_motion.BRISTLE]
+    assert found.interval is None or found.interval[0] < true < found.interval[1]
+    assert found.interval is not None or found.value == factor * true, "not determined: it keeps its value"
 
 
 @pytest.mark.check
