@@ -114,10 +114,10 @@ def knowledge(model: Model, runs: Sequence[Run], before: Model | None = None) ->
         empty = np.zeros(0)
         return Knowledge(model, Known((), empty, empty, empty), nothing, estimates)
     together = on_one_clock(runs)
-    fitter = Fitter(model, together, candidates=())
+    fitter = Fitter(_as_sheet(model), together, candidates=())
     known, every = fitter.known(model), fitter.train
     fitter.train = surely_static(every, before or model)
-    found = _fitted(fitter, known, together, before)
+    found = _fitted(fitter, known, begun(model, together), before)
     if before is None:  # which breakaways count, the data sheet says badly
         fitter.train = surely_static(every, _presliding(found, together)[0])
         found = fitter.refit(found)
@@ -129,6 +129,15 @@ def knowledge(model: Model, runs: Sequence[Run], before: Model | None = None) ->
         for name in default_free(model)
     }
     return Knowledge(found, known, what, estimates)
+
+
+def _as_sheet(model: Model) -> Model:
+    """`model` with every prior stated, as wide as that which estimates are compared with.
+
+    Where a file states nothing, a diagnosis takes 3 %, as for a machine that was identified, and `default_prior` 5 %.
+    Slopes of the dead zone and gain of the valve act as a product, so the prior alone tells how large each of them is.
+    """
+    return model.with_uncertainty({name: default_prior(model, name) for name in default_free(model)})
 
 
 def begun(model: Model, runs: Sequence[Run]) -> list[Model]:
@@ -151,13 +160,12 @@ def _farther(model: Model, name: str) -> float:
     return min(model[name] + model.uncertainty[name], model.specification(name).high)
 
 
-def _fitted(fitter: Fitter, known: Known, runs: Sequence[Run], before: Model | None) -> Model:
-    """The start of the fitter fitted from several valves: the best fit, or with that of `before` the best start."""
+def _fitted(fitter: Fitter, known: Known, starts: list[Model], before: Model | None) -> Model:
+    """Fitted from several valves, `starts`: the best fit, or with that of `before` the best start."""
 
     def likely(one: Model) -> float:
         return log_likelihood(fitter.train, fitter.train.residual(one)) - strain(known.offset(one))
 
-    starts = begun(fitter.start, runs)
     if before is not None:
         valve = {name: before[name] for name in (*LIMITS, GAIN) if name in before.parameters}
         return fitter.refit(max([fitter.start.with_parameters(valve), *starts], key=likely))

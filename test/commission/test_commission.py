@@ -320,6 +320,15 @@ def test_what_a_move_tells_is_predicted(commissioned: tuple[Commissioned, Simula
     assert found.left > 0.0
 
 
+def test_a_level_that_only_the_prior_tells_is_as_uncertain_as_it(
+    commissioned: tuple[Commissioned, SimulatedRig, list[str]],
+) -> None:
+    """Both slopes and the gain act as a product: their common level has the prior's deviation over root 2 at least."""
+    known = commissioned[0].knowledge.estimates
+    for name in ("dead_zone.right_slope", "dead_zone.left_slope"):
+        assert known[name].std > 0.95 * known[name].prior / np.sqrt(2.0)
+
+
 def test_its_summary_is_plain_data(commissioned: tuple[Commissioned, SimulatedRig, list[str]]) -> None:
     found = commissioned[0]
     told = summary(found)
