@@ -280,8 +280,11 @@ class Commissioning:
                 return Performed(tuple(recordings), seconds)
             if not may_be_tried_again(done.reason):
                 raise DataError(f"{name}: {done.reason}")
-            left = replace(tried, trials=tried.trials[len(done.recordings) :])
             self._refuted = True
+            trials = tried.trials[len(done.recordings) :]
+            if not trials:  # it ended on the way back from the last one
+                break
+            left = replace(tried, trials=trials)
             other = again(left, done.reason, agreeing(left, done.reason, self._otherwise(), 1 + moves.DRAWN))
             if other is None:
                 self.tell(f"{name}: {done.reason}; no other voltages are safe")

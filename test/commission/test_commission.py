@@ -219,6 +219,21 @@ def test_what_is_not_safe_is_not_tried_again(sheet: Model, truth: Model, monkeyp
     assert "no other voltages are safe" in said[0]
 
 
+def test_a_move_that_ends_after_its_last_trial_is_not_tried_again(sheet: Model, truth: Model) -> None:
+    """On the way back the piston stays: all trials are recorded, and none is left to try."""
+    rig, sent = SimulatedRig(truth), list[Programme]()
+
+    def perform(programme: Programme, words: tuple[str, ...], name: str) -> Performed:
+        sent.append(programme)
+        return replace(rig.perform(programme, words, name), reason="at +0.50 V the piston stays at +0.070 m")
+
+    programme = replace(moves.static(sheet), trials=moves.static(sheet).trials[:2])
+    done = Commissioning(sheet, perform, sensors=())._performed(programme, "static")
+    assert len(sent) == 1
+    assert len(done.recordings) == 2
+    assert "stays" in done.reason
+
+
 def test_a_move_at_which_the_piston_stays_ends_no_commissioning(
     sheet: Model, truth: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
