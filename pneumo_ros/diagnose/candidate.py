@@ -59,8 +59,8 @@ class Candidate:
         Nor that it removes little: what is left may be something else, which neither shows nor excludes it. Held-out
         recordings are against it if they lose more than all recordings together gain.
         """
-        small, against = 0.0 < self.score.nats < MARGIN, self.score.held <= -self.score.nats
-        return small and not against and not replace(self, score=Score(MARGIN, MARGIN), share=1.0).objections
+        some = max(0.0, -self.score.held) < self.score.nats < MARGIN
+        return some and not replace(self, score=Score(MARGIN, MARGIN), share=1.0).objections
 
     @property
     def objections(self) -> tuple[str, ...]:

@@ -101,7 +101,7 @@ class Scoring:
         levels = [part.noise_of(model) for part in parts]
         return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
 
-    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit]) -> "Best":
+    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit]) -> Best:
         """The log evidence of a fit, its base parameters moved to where that of the training runs is largest.
 
         `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little

@@ -38,7 +38,7 @@ LOOP_SEGMENT, FEWEST = 1.0, 10  # s, of a position loop; recordings too short fo
 MOST = 140  # segments: more narrow intervals slowly and take proportionally longer
 _DETERMINED = 0.5  # of the prior deviation: a parameter that is known no better is not determined
 BRISTLE = "lugre_friction.bristle_stiffness"
-APART = 3.0  # the halves start at the bristle stiffness times and over this factor
+APART = 3.0  # times and over the bristle stiffness, where the halves start: half a power of ten either way
 _TOLD_APART = 1.92  # cost: half the 95 % point of chi squared with one degree; data do not tell what differs by less
 # not found by motion: a scale of the opening that the coefficients take in, and a share that is chosen
 _LEFT = ("arctan_flow.voltage_gain", "choked_flow.blend")
@@ -84,10 +84,9 @@ def fit_by_motion(
     segments = cut(model, alike, max(_length(model, alike), SAMPLES * alike[0].sample_time))
     rows = np.unique(np.linspace(0, len(segments) - 1, min(MOST, len(segments))).round().astype(np.int64))
     parts = [segments.pick(rows[k::2]) for k in range(2)]
-    halves, fits = _halves(model, parts, parameters_of(model, wanted), tell)
+    halves, least = _halves(model, parts, parameters_of(model, wanted), tell)
     free = tuple(halves[0].estimates)
-    spread = {BRISTLE: _spread(fits)} if _unstated(model, free) else {}
-    found = {name: _found(model, name, halves, len(rows), spread.get(name, 0.0)) for name in free}
+    found = {name: _found(model, name, halves, len(rows), least.get(name, 0.0)) for name in free}
     values = {name: one.value for name, one in found.items()}
     unknown = {name: "the recordings do not tell it from the others" for name, one in found.items() if not one.interval}
     noise = 0.5 * sum(_measured(part) for part in parts)
@@ -105,9 +104,13 @@ def _length(model: Model, runs: Sequence[Run]) -> float:
 
 def _halves(
     model: Model, parts: Sequence[Segments], free: Sequence[str], tell: Callable[[float, str], None]
-) -> tuple[list[Refit], list[Refit]]:
-    """A refit of each half, and all fits; the half that fits worse is tried once more from the values of the other."""
-    unstated = _unstated(model, free)
+) -> tuple[list[Refit], dict[str, float]]:
+    """A refit of each half; the half that fits worse is tried once more from the values of the other.
+
+    And by name the least deviation: half the distance of the farthest of all fits, where the bristle stiffness is
+    fitted without a stated uncertainty.
+    """
+    unstated = BRISTLE in free and BRISTLE not in model.uncertainty
     priors = {BRISTLE: model[BRISTLE]} if unstated else {}
 
     def fit(start: Model, part: Segments, share: float) -> Refit:
@@ -117,20 +120,12 @@ def _halves(
     losses = [half.costs[-1] / _measured(part) for half, part in zip(halves, parts, strict=True)]
     worse = int(np.argmax(losses))
     again = fit(halves[1 - worse].model, parts[worse], 2.0 / 3.0)
+    fits = (*halves, again)
+    least = {BRISTLE: 0.5 * float(np.ptp([one.estimates[BRISTLE].value for one in fits]))} if unstated else {}
     # the prior of the new fit is about the values of the other half, which is no evidence that they agree
     if _by_data(again) < _by_data(halves[worse]) - _TOLD_APART:
-        return [again if k == worse else half for k, half in enumerate(halves)], [*halves, again]
-    return halves, [*halves, again]
-
-
-def _unstated(model: Model, free: Sequence[str]) -> bool:
-    """Whether the bristle stiffness is fitted without a stated uncertainty."""
-    return BRISTLE in free and BRISTLE not in model.uncertainty
-
-
-def _spread(fits: Sequence[Refit]) -> float:
-    """Half the distance between the farthest bristle stiffnesses of the fits, in its unit."""
-    return 0.5 * float(np.ptp([fit.estimates[BRISTLE].value for fit in fits]))
+        halves[worse] = again
+    return halves, least
 
 
 def _begun(model: Model, apart: bool) -> tuple[Model, Model]:
