@@ -15,7 +15,7 @@ _FACTOR = 4.0  # between the shapes that are tried first
 _TUNE, _TUNED = 1.25, 7  # factor between frequencies tried, and their number either way: broad resonances overlap
 _FREQUENCY = ("Hz", "rad/s")
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size over its typical size, of the logarithm of a shape
-_FEW, _PROFILE = 3, 3.0  # most sizes of no profile; prior deviation in a profile, some of whose points have no data
+_FEW, _PROFILE = 3, 1.0  # most sizes of no profile; prior deviation in a profile, as in the score: not all have data
 
 
 @dataclass(frozen=True)

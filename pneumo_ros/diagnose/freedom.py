@@ -7,7 +7,8 @@ parameters while further candidates are judged; the model that is refitted and p
 Sensor effects are not free in shape: an offset is an offset.
 
 No machine's friction is the same all along its stroke, either. So every model has each profile that it lacks, each of
-its sizes known to be zero to a tenth of its usual size: only more than that is an effect.
+its sizes known to be zero to a tenth of its usual size: only more than that is an effect. Where a profile is the
+candidate, its points are known to a usual size: training may not pass all the places that held-out runs pass.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile
 from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
 from pneumo_ros.diagnose.follow import reads_wrong
-from pneumo_ros.diagnose.hypothesis import BaseFit, vectors
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, vectors
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import SIDES
 from pneumo_ros.plant.reach import owners_read
@@ -69,6 +70,23 @@ def uneven(fit: BaseFit, columns: Mapping[str, Array]) -> BaseFit:
             bent = _bent(fit, tuple(f"{name} {k}" for k in range(own.shape[1])), own)
             fit = replace(bent, uneven=fit.uneven + own.shape[1])
     return fit
+
+
+def points_of(fit: BaseFit, h: Hypothesis) -> NDArray[np.bool_]:
+    """Which free parameters (free,) are points of a profile that the model lacks and that `h` adds."""
+    return np.array([name.partition(" ")[0] == h.name for name in fit.names])
+
+
+def loosened(fit: BaseFit, h: Hypothesis) -> BaseFit:
+    """The fit with the points of the profile that `h` adds free by a usual size, about the sizes that `h` has there."""
+    own, u = points_of(fit, h), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
+    if not own.any():
+        return fit
+    sizes = [c.name for c in coordinates(fit.model.library.find(h.name)) if c.is_size]
+    offset, slopes = fit.offset.copy(), fit.slopes.copy()
+    offset[own] = [u.get(name, 0.0) for name in sizes]
+    slopes[:, own] /= LAW_SPREAD
+    return replace(fit, offset=offset, slopes=slopes)
 
 
 def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequence[Coordinate]]) -> dict[str, Array]:

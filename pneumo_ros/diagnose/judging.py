@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
+from pneumo_ros.diagnose.freedom import LAW_SPREAD, loosened, points_of
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
 from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, moved, occam, prior_gain, surprise
@@ -36,11 +37,16 @@ def judged(
     alone = scoring.best(base.everything, fits, [(nothing.residual, held.residual, nothing.shift)])
     reached = [_best(scoring, fits, h, r, alone) for h, r in zip(hypotheses, residuals, strict=True)]
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
-    ends = [one for each in (alone, *reached) for one in (each.train, each.whole)]
-    alone = scoring.best(base.everything, fits, [moved(alone.train, fits, end[2] - alone.train[2]) for end in ends])
-    for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
+    ends = [alone.train[2], alone.whole[2]]
+    ends += [
+        np.where(points_of(base, h), alone.train[2], end[2])
+        for h, (_, one) in zip(hypotheses, reached, strict=True)
+        for end in (one.train, one.whole)
+    ]
+    alone = scoring.best(base.everything, fits, [moved(alone.train, fits, end - alone.train[2]) for end in ends])
+    for h, r, (free, beside) in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.evidence - alone.evidence
-        strained, prior = surprise(base, alone.train[2]), prior_gain(base, alone.train[2], beside.train[2], h)
+        strained, prior = surprise(base, alone.train[2]), prior_gain(base, alone.train[2], free, beside.train[2], h)
         acts = acting(held.residual, r)
         found.append(
             Candidate(
@@ -61,10 +67,22 @@ def judged(
     return best_forms(found)
 
 
-def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best) -> Best:
-    """`Scoring.best` of a hypothesis, from its own base parameters or from those that are best without it."""
-    model, own = fits[0].everything.with_parameters(h.values), (h.residual, held, h.shift)
-    return scoring.best(model, fits, [own, *(moved(own, fits, end[2] - h.shift) for end in (alone.train, alone.whole))])
+def _best(
+    scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best
+) -> tuple[BaseFit, Best]:
+    """`Scoring.best` of a hypothesis, from its own base parameters or from those that are best without it.
+
+    And its free parameters on training runs: points of a profile that it adds are `loosened`.
+    """
+    model, free = fits[0].everything.with_parameters(h.values), (loosened(fits[0], h), loosened(fits[1], h))
+    points, here = points_of(fits[0], h), h.shift.copy()
+    here[points] *= LAW_SPREAD
+    own, starts = (h.residual, held, here), list[Array]()
+    for end in (alone.train[2], alone.whole[2]):
+        starts.append(np.where(points, here, end))
+        if points.any():  # and without the profile
+            starts.append(np.where(points, LAW_SPREAD * end - free[0].offset, end))
+    return free[0], scoring.best(model, free, [own, *(moved(own, free, start - here) for start in starts)])
 
 
 def best_forms(candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -350,12 +350,14 @@ def occam(base: BaseFit, h: Hypothesis) -> float:
     return 0.5 * float(np.linalg.slogdet(np.eye(len(information)) + information)[1])
 
 
-def prior_gain(base: BaseFit, alone: Array, beside: Array, h: Hypothesis) -> float:
+def prior_gain(base: BaseFit, alone: Array, free: BaseFit, beside: Array, h: Hypothesis) -> float:
     """Log prior of a candidate's coordinates and base parameters, minus that of base parameters without it.
 
-    alone, beside: shifts (free,) of the base parameters.
+    alone, beside: shifts (free,) of the base parameters of `base`, and of `free`, that of the candidate. Where these
+    hold the candidate's own points, as those of a profile, its coordinates count among them.
     """
-    return surprise(base, alone) - surprise(base, beside) - 0.5 * float(h.u @ h.u)
+    own = 0.0 if any(name.partition(" ")[0] == h.name for name in free.names) else 0.5 * float(h.u @ h.u)
+    return surprise(base, alone) - surprise(free, beside) - own
 
 
 def surprise(base: BaseFit, shift: Array) -> float:

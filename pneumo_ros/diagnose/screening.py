@@ -33,6 +33,7 @@ STRAINED = (
 OPEN = 3.0  # V: the valve of the usual machine is open
 IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
 REWEIGHTED = 5  # least-squares solutions, each weighted by the residual of the previous one
+FREE = 1e-3  # information about a size in steps: none to speak of
 SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 
 
@@ -106,7 +107,7 @@ def _linear(
         sizes = [kept.index(k) for k in sizes if k not in idle]
         effect, u = tuple(effect[k] for k in kept), u[kept]
     K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
-    ridge = np.concatenate([np.ones(p), np.full(len(sizes), 1e-3)])
+    ridge = np.concatenate([np.ones(p), [_known(effect[k], u[k]) for k in sizes]])
     offset = np.concatenate([base.offset, np.zeros(len(sizes))])
     after, x = base.residual, np.zeros(K.shape[1])
     low, high = _room(effect, u, sizes, p)
@@ -126,6 +127,11 @@ def _linear(
     relief = relief_of(base, x[:p])
     value = log_likelihood(base.evidence, after) - strain(x[:p] + base.offset)
     return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
+
+
+def _known(c: Coordinate, u: float) -> float:
+    """Prior information about a size in steps of `u`: a point of a profile that no recording passes stays neutral."""
+    return FREE if c.logarithmic else max(FREE, (u / c.prior) ** 2)
 
 
 def _room(effect: tuple[Coordinate, ...], u: Array, sizes: list[int], own: int) -> tuple[Array, Array]:

@@ -10,8 +10,20 @@ import pytest
 from pneumo_ros.diagnose.basefit import unaided
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaped, shaping, uneven, unevenness
-from pneumo_ros.diagnose.hypothesis import BaseFit
+from pneumo_ros.diagnose.freedom import (
+    LAW_SPREAD,
+    conditions,
+    freed,
+    loosened,
+    points_of,
+    relative,
+    shaped,
+    shaping,
+    uneven,
+    unevenness,
+)
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.diagnose.score import prior_gain
 from pneumo_ros.plant import load_model
 
 SIZE = 30.0  # N s/m
@@ -105,6 +117,24 @@ def test_friction_is_never_the_same_all_along_the_stroke(rough: float, goes: boo
     left = float(np.sqrt(np.mean(unaided(free).residual ** 2)))
     assert (left < 1.03) is goes
     assert uneven(replace(fit, model=START.with_effects([*START.effects, PROFILE])), {PROFILE: KNOTS.T}).bends == 0
+
+
+def test_points_of_a_profile_that_is_a_candidate_are_known_as_effects_are() -> None:
+    """To a usual size about the candidate's own sizes; points that training does not pass, about zero."""
+    fit = BaseFit(START, START, ("a",), np.ones(1), np.ones(1), EVIDENCE, np.zeros(N), np.zeros((N, 1)))
+    fit = uneven(fit, {PROFILE: 0.5 * KNOTS.T})
+    some = tuple(coordinates(START.library.find(PROFILE))[3:6])
+    h = Hypothesis(PROFILE, some, np.array([1.0, 2.0, 3.0]), np.zeros(26), fit.residual)
+    free = loosened(fit, h)
+    assert free.offset.tolist() == [1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, *([0.0] * 19)]
+    np.testing.assert_allclose(free.slopes[:, points_of(fit, h)], fit.slopes[:, 1:] / LAW_SPREAD)
+    # taken back to nothing, its points cost nothing; as they are, each half the square of its size
+    none, here, back = np.zeros(26), np.zeros(26), -free.offset * points_of(fit, h)
+    assert prior_gain(fit, none, free, here, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
+    assert prior_gain(fit, none, free, back, h) == pytest.approx(0.0)
+    other = replace(h, name="constant_load")
+    assert loosened(fit, other) is fit
+    assert prior_gain(fit, none, fit, here, other) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
 
 
 def test_only_profiles_are_free_where_the_model_lacks_them() -> None:

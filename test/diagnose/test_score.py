@@ -1,5 +1,6 @@
 """The score of models: evidence of residuals with noise and a discrepancy that no model has."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -9,7 +10,9 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.freedom import uneven
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
+from pneumo_ros.diagnose.judging import judged
 from pneumo_ros.diagnose.score import Scoring, moved, occam, prior_gain, surprise
 from pneumo_ros.plant import Model, load_model
 
@@ -24,6 +27,7 @@ def evidence(windows: int = N, name: str = "momentum 100 ms", runs: int = 1) -> 
     each = windows // runs
     parts = {
         "names": (name,), "family": np.zeros(windows, dtype=np.int64), "noise": np.ones(windows),
+        "drive": 1000.0, "runs": [SimpleNamespace(sample_time=1e-3)],
         "time": np.tile(HOP * np.arange(each), runs), "run": np.repeat(np.arange(runs), each),
     }  # fmt: skip
 
@@ -193,9 +197,9 @@ def test_a_point_of_a_profile_is_no_line_of_the_file() -> None:
 def test_base_parameters_that_return_to_what_is_known_of_them_are_evidence() -> None:
     base, nothing, h = fitted(1, 1.0, shift=3.0)
     back = np.array([-3.0])
-    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(4.5, abs=0.05)
+    assert prior_gain(base, nothing.shift, base, back, h) == pytest.approx(4.5, abs=0.05)
     h.u = np.array([2.0])
-    assert prior_gain(base, nothing.shift, back, h) == pytest.approx(2.5, abs=0.05)
+    assert prior_gain(base, nothing.shift, base, back, h) == pytest.approx(2.5, abs=0.05)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -248,3 +252,20 @@ def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> N
     )
     assert plain < -20.0
     assert abs(beside[1] - alone[1]) < 5.0
+
+
+def test_a_profile_is_no_worse_for_places_that_training_did_not_pass() -> None:
+    """Friction along the stroke, found where training went: held-out runs go farther, and must not lose by it."""
+    profile = "position_dependent_friction"
+    whole = MODEL.with_effects([*MODEL.effects, profile], {f"{profile}.knot_12": 0.0})
+    part, place = evidence(), (np.arange(N) // 200) % 25
+    passed = 30.0 * np.eye(25)[place]  # deviations of the noise by a usual size of each point
+    here, beyond = passed * (place < 12)[:, None], passed
+    plain = BaseFit(MODEL, whole, ("a",), np.ones(1), np.zeros(1), part, np.zeros(N), np.zeros((N, 1)))
+    true, found = np.linspace(0.5, 2.0, 25), coordinates(MODEL.library.find(profile))[:12]
+    base = uneven(replace(plain, residual=noise(0) - here @ true), {profile: 0.1 * here})
+    held = uneven(replace(plain, residual=noise(1) - beyond @ true), {profile: 0.1 * beyond})
+    u, nothing = np.where(np.arange(25) < 12, true, 0.0), Hypothesis("", (), np.empty(0), np.zeros(26), base.residual)
+    h = Hypothesis(profile, found, u[:12], np.zeros(26), base.residual + here @ u, slopes=here[:, :12])
+    one = judged(base, held, [h], [held.residual + beyond @ u], nothing, first=True)[0]
+    assert one.score.held > one.score.train > 100.0  # more places, more evidence

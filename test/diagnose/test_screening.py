@@ -37,6 +37,13 @@ def test_no_size_leaves_its_range() -> None:
             assert c.low <= c.value(float(u)) <= c.high
 
 
+def test_a_point_of_a_profile_that_is_hardly_passed_stays_near_zero() -> None:
+    """Least squares alone would take it for several usual sizes, by what noise does in a few windows."""
+    profile = next(h for h in screened()[1] if h.name == "position_dependent_friction")
+    assert len(profile.u) > 3
+    assert float(np.max(np.abs(profile.u))) < 1.0
+
+
 def test_an_effect_does_not_explain_noise_by_a_negative_size() -> None:
     """A negative mass would lower the noise of the acceleration, with hundreds of log likelihood."""
     nothing, ranked = screened()
