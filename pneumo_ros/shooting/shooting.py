@@ -129,10 +129,15 @@ class Shooting(Problem):
         residuals = self.residuals(new, theta)
         worse = np.flatnonzero((self.losses(residuals) > before + _WORSE) & self.active)
         if len(worse):
-            part, model = self.segments.pick(worse), self.with_values(theta)
-            for begin in (new[worse], stayed[worse]):
-                for starts in (begin, fit_starts(model, part, begin, _SETTLING, self.threads)):
-                    self._take_better(new, residuals, starts, self.residuals(starts, theta, part), worse)
+            both = self.segments.pick(np.tile(worse, 2))  # from either start, in one batch of lanes
+            begin, count = np.concatenate([new[worse], stayed[worse]]), len(worse)
+            fitted = fit_starts(self.with_values(theta), both, begin, _SETTLING, self.threads)
+            for starts, theirs in (
+                (fitted, self.residuals(fitted, theta, both)),
+                (begin, self.residuals(begin, theta, both)),
+            ):
+                for own in (slice(count), slice(count, None)):
+                    self._take_better(new, residuals, starts[own], theirs[own], worse)
         return new, theta, residuals
 
     def _take_better(self, states: Array, residuals: Array, others: Array, theirs: Array, which: Index) -> None:
