@@ -77,15 +77,15 @@ def points_of(fit: BaseFit, h: Hypothesis) -> NDArray[np.bool_]:
     return np.array([name.partition(" ")[0] == h.name for name in fit.names])
 
 
-def loosened(fit: BaseFit, h: Hypothesis) -> BaseFit:
-    """The fit with the points of the profile that `h` adds free by a usual size, about the sizes that `h` has there."""
+def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
+    """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has."""
     own, u = points_of(fit, h), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
     if not own.any():
         return fit
     sizes = [c.name for c in coordinates(fit.model.library.find(h.name)) if c.is_size]
     offset, slopes = fit.offset.copy(), fit.slopes.copy()
-    offset[own] = [u.get(name, 0.0) for name in sizes]
-    slopes[:, own] /= LAW_SPREAD
+    offset[own] = [u.get(name, 0.0) / spread for name in sizes]
+    slopes[:, own] *= spread / LAW_SPREAD
     return replace(fit, offset=offset, slopes=slopes)
 
 

@@ -1,6 +1,8 @@
 """Candidates judged: their scores, their sizes, and what they remove on held-out runs."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +12,27 @@ from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.freedom import LAW_SPREAD, loosened, points_of
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
-from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, moved, occam, prior_gain, surprise
+from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
+SPREADS = (0.2, 0.45, 1.0)  # usual sizes: of the points of a profile, unknown between a texture and a usual size
 NONE_WITHIN = 2.0  # deviations from zero: a smaller size may be zero
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A hypothesis at its best: its evidence, the log prior of its parameters, and what its freedom costs."""
+
+    best: Best
+    prior: float
+    cost: float
+
+    @property
+    def nats(self) -> float:
+        """All recordings together, but for a constant."""
+        return float(self.best.evidence.sum()) + self.prior - self.cost
 
 
 def judged(
@@ -35,19 +52,23 @@ def judged(
         return found
     scoring.measure(base.everything, nothing.residual, held.residual)
     alone = scoring.best(base.everything, fits, [(nothing.residual, held.residual, nothing.shift)])
-    reached = [_best(scoring, fits, h, r, alone) for h, r in zip(hypotheses, residuals, strict=True)]
+    with ThreadPoolExecutor(2) as pool:
+        reached = list(pool.map(lambda h, r: _best(scoring, fits, h, r, alone), hypotheses, residuals))
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
     ends = [alone.train[2], alone.whole[2]]
     ends += [
         np.where(points_of(base, h), alone.train[2], end[2])
-        for h, (_, one) in zip(hypotheses, reached, strict=True)
-        for end in (one.train, one.whole)
+        for h, one in zip(hypotheses, reached, strict=True)
+        for end in (one.best.train, one.best.whole)
     ]
     alone = scoring.best(base.everything, fits, [moved(alone.train, fits, end - alone.train[2]) for end in ends])
-    for h, r, (free, beside) in zip(hypotheses, residuals, reached, strict=True):
-        gained = beside.evidence - alone.evidence
-        strained, prior = surprise(base, alone.train[2]), prior_gain(base, alone.train[2], free, beside.train[2], h)
-        acts = acting(held.residual, r)
+    for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
+        gained = beside.best.evidence - alone.evidence
+        lines = ~points_of(base, h)  # a texture that its points explain is nothing that was known
+        strained = surprise(base, alone.train[2] * lines)
+        known = strained - surprise(base, beside.best.train[2] * lines) - 0.5 * float(h.u @ h.u)
+        prior = surprise(base, alone.train[2]) + beside.prior
+        before, after = alone.whole[1], beside.best.whole[1]  # as for the score: not what training hardly determines
         found.append(
             Candidate(
                 hypothesis=h,
@@ -55,11 +76,12 @@ def judged(
                 gain=gains(held.evidence, held.residual, r),
                 size=magnitude(h.coordinates, h.u),
                 share=max(
-                    explained(held.evidence, held.residual, r, acts, textured=first), prior / max(strained, MARGIN)
+                    explained(held.evidence, before, after, acting(before, after), textured=first),
+                    known / max(strained, MARGIN),
                 ),
-                known=prior,
+                known=known,
                 first=first,
-                score=Score(float(gained[0]) + prior - occam(base, h), float(gained[1])),
+                score=Score(float(gained[0]) + prior - beside.cost, float(gained[1])),
                 lag=lag(h, base.evidence.runs[0].sample_time),
                 swing=swing(h, base.evidence.runs[0].sample_time),
             )
@@ -67,22 +89,30 @@ def judged(
     return best_forms(found)
 
 
-def _best(
-    scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best
-) -> tuple[BaseFit, Best]:
+def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best) -> _Beside:
     """`Scoring.best` of a hypothesis, from its own base parameters or from those that are best without it.
 
-    And its free parameters on training runs: points of a profile that it adds are `loosened`.
+    Points of a profile that it adds are `loosened`, by the spread of the largest score.
     """
-    model, free = fits[0].everything.with_parameters(h.values), (loosened(fits[0], h), loosened(fits[1], h))
-    points, here = points_of(fits[0], h), h.shift.copy()
-    here[points] *= LAW_SPREAD
-    own, starts = (h.residual, held, here), list[Array]()
-    for end in (alone.train[2], alone.whole[2]):
-        starts.append(np.where(points, here, end))
-        if points.any():  # and without the profile
-            starts.append(np.where(points, LAW_SPREAD * end - free[0].offset, end))
-    return free[0], scoring.best(model, free, [own, *(moved(own, free, start - here) for start in starts)])
+    model, points, found = fits[0].everything.with_parameters(h.values), points_of(fits[0], h), list[_Beside]()
+    for spread in SPREADS if points.any() else (1.0,):
+        free, here = (loosened(fits[0], h, spread), loosened(fits[1], h, spread)), h.shift.copy()
+        here[points] *= LAW_SPREAD / spread
+        own, starts = (h.residual, held, here), list[Array]()
+        for end in (alone.train[2], alone.whole[2]):
+            starts.append(np.where(points, here, end))
+            if points.any():  # and without the profile
+                starts.append(np.where(points, LAW_SPREAD / spread * end - free[0].offset, end))
+        best = scoring.best(model, free, [own, *(moved(own, free, start - here) for start in starts)])
+        found.append(_Beside(best, log_prior(free[0], best.train[2], h), occam(fits[0], h, spread)))
+    chosen = max(found, key=lambda one: one.nats)
+    return replace(chosen, cost=chosen.cost + float(np.log(len(found))))
+
+
+def freedom(base: BaseFit, h: Hypothesis) -> float:
+    """Nats that the freedom of a hypothesis costs beside its likelihood; of a profile, by the spread that suits it."""
+    spreads = SPREADS if points_of(base, h).any() else (1.0,)
+    return min(occam(base, h, s) + 0.5 * (1.0 / s**2 - 1.0) * float(h.u @ h.u) for s in spreads)
 
 
 def best_forms(candidates: Sequence[Candidate]) -> list[Candidate]:

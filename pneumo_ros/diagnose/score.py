@@ -337,27 +337,26 @@ def _whiten(series, noise, time, run, size, correlation, tail):  # type: ignore[
         variance *= 1.0 - gain
 
 
-def occam(base: BaseFit, h: Hypothesis) -> float:
+def occam(base: BaseFit, h: Hypothesis, spread: float = 1.0) -> float:
     """Nats that the free coordinates of a candidate cost: half the log determinant of 1 + prior information.
 
-    Their prior is one usual size, or a factor e; what base parameters may replace is no information.
+    Their prior is `spread` usual sizes, or a factor e; what base parameters may replace is no information.
     """
     w = weights(base.evidence, h.residual, family_scales(base.evidence, h.residual))
-    A, p = np.concatenate([base.slopes, h.slopes], axis=1) * w[:, None], len(base.names)
+    A, p = np.concatenate([base.slopes, spread * h.slopes], axis=1) * w[:, None], len(base.names)
     normal = A.T @ A
     own = normal[:p, :p] + np.eye(p)
     information = normal[p:, p:] - normal[p:, :p] @ np.linalg.solve(own, normal[:p, p:])
     return 0.5 * float(np.linalg.slogdet(np.eye(len(information)) + information)[1])
 
 
-def prior_gain(base: BaseFit, alone: Array, free: BaseFit, beside: Array, h: Hypothesis) -> float:
-    """Log prior of a candidate's coordinates and base parameters, minus that of base parameters without it.
+def log_prior(free: BaseFit, shift: Array, h: Hypothesis) -> float:
+    """Log prior of a candidate's coordinates and of its base parameters, at a shift (free,) of these.
 
-    alone, beside: shifts (free,) of the base parameters of `base`, and of `free`, that of the candidate. Where these
-    hold the candidate's own points, as those of a profile, its coordinates count among them.
+    Where they hold the candidate's own points, as those of a profile, its coordinates count among them.
     """
     own = 0.0 if any(name.partition(" ")[0] == h.name for name in free.names) else 0.5 * float(h.u @ h.u)
-    return surprise(base, alone) - surprise(free, beside) - own
+    return -surprise(free, shift) - own
 
 
 def surprise(base: BaseFit, shift: Array) -> float:

@@ -14,7 +14,7 @@ from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
-from pneumo_ros.diagnose.judging import by_score, judged, size_in, undetermined
+from pneumo_ros.diagnose.judging import by_score, freedom, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import (
@@ -28,7 +28,6 @@ from pneumo_ros.diagnose.prediction import (
 )
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest
-from pneumo_ros.diagnose.score import occam
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
@@ -297,7 +296,7 @@ class Search:
         screened, bare = screen(part), unaided(part)
         promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
         short = shortlist(part, bare, promising or screened[:SHOWN_ANYWAY], SHORTLIST)
-        fitted = sorted(refine(part, short), key=lambda h: occam(part, h) - h.likelihood)
+        fitted = sorted(refine(part, short), key=lambda h: freedom(part, h) - h.likelihood)
         return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
 
     def judged(

@@ -57,7 +57,7 @@ def test_frequencies_are_tried_finely_with_much_damping() -> None:
 
 def test_a_profile_stays_near_neutral_where_no_recording_goes() -> None:
     widths = {name: {c.prior for c in own if c.is_size and not c.logarithmic} for name, own in MISSING.items()}
-    assert widths["position_dependent_friction"] == {3.0}  # of a tenth each
+    assert widths["position_dependent_friction"] == {1.0}  # of a tenth each, as in the score
     assert {30.0} == set().union(*(w for name, w in widths.items() if name != "position_dependent_friction"))
 
 

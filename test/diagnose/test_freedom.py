@@ -23,7 +23,7 @@ from pneumo_ros.diagnose.freedom import (
     unevenness,
 )
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
-from pneumo_ros.diagnose.score import prior_gain
+from pneumo_ros.diagnose.score import log_prior
 from pneumo_ros.plant import load_model
 
 SIZE = 30.0  # N s/m
@@ -119,22 +119,22 @@ def test_friction_is_never_the_same_all_along_the_stroke(rough: float, goes: boo
     assert uneven(replace(fit, model=START.with_effects([*START.effects, PROFILE])), {PROFILE: KNOTS.T}).bends == 0
 
 
-def test_points_of_a_profile_that_is_a_candidate_are_known_as_effects_are() -> None:
-    """To a usual size about the candidate's own sizes; points that training does not pass, about zero."""
+@pytest.mark.parametrize("spread", [0.2, 1.0])
+def test_points_of_a_profile_that_is_a_candidate_are_known_as_effects_are(spread: float) -> None:
+    """To a share of a usual size about the candidate's own sizes; points that training does not pass, about zero."""
     fit = BaseFit(START, START, ("a",), np.ones(1), np.ones(1), EVIDENCE, np.zeros(N), np.zeros((N, 1)))
     fit = uneven(fit, {PROFILE: 0.5 * KNOTS.T})
     some = tuple(coordinates(START.library.find(PROFILE))[3:6])
     h = Hypothesis(PROFILE, some, np.array([1.0, 2.0, 3.0]), np.zeros(26), fit.residual)
-    free = loosened(fit, h)
-    assert free.offset.tolist() == [1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, *([0.0] * 19)]
-    np.testing.assert_allclose(free.slopes[:, points_of(fit, h)], fit.slopes[:, 1:] / LAW_SPREAD)
-    # taken back to nothing, its points cost nothing; as they are, each half the square of its size
-    none, here, back = np.zeros(26), np.zeros(26), -free.offset * points_of(fit, h)
-    assert prior_gain(fit, none, free, here, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
-    assert prior_gain(fit, none, free, back, h) == pytest.approx(0.0)
+    free = loosened(fit, h, spread)
+    assert free.offset == pytest.approx([1.0, 0.0, 0.0, 0.0, *(np.arange(1, 4) / spread), *([0.0] * 19)])
+    np.testing.assert_allclose(free.slopes[:, points_of(fit, h)], fit.slopes[:, 1:] * spread / LAW_SPREAD)
+    # taken back to nothing, its points cost nothing; as they are, each half the square of its size in spreads
+    here, back = np.zeros(26), -free.offset * points_of(fit, h)
+    assert log_prior(free, here, h) - log_prior(free, back, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0) / spread**2)
     other = replace(h, name="constant_load")
-    assert loosened(fit, other) is fit
-    assert prior_gain(fit, none, fit, here, other) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
+    assert loosened(fit, other, spread) is fit
+    assert log_prior(fit, here, other) - log_prior(free, back, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
 
 
 def test_only_profiles_are_free_where_the_model_lacks_them() -> None:

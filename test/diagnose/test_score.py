@@ -13,7 +13,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import uneven
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.judging import judged
-from pneumo_ros.diagnose.score import Scoring, moved, occam, prior_gain, surprise
+from pneumo_ros.diagnose.score import Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model, load_model
 
 Array = NDArray[np.float64]
@@ -197,9 +197,9 @@ def test_a_point_of_a_profile_is_no_line_of_the_file() -> None:
 def test_base_parameters_that_return_to_what_is_known_of_them_are_evidence() -> None:
     base, nothing, h = fitted(1, 1.0, shift=3.0)
     back = np.array([-3.0])
-    assert prior_gain(base, nothing.shift, base, back, h) == pytest.approx(4.5, abs=0.05)
+    assert surprise(base, nothing.shift) + log_prior(base, back, h) == pytest.approx(4.5, abs=0.05)
     h.u = np.array([2.0])
-    assert prior_gain(base, nothing.shift, base, back, h) == pytest.approx(2.5, abs=0.05)
+    assert surprise(base, nothing.shift) + log_prior(base, back, h) == pytest.approx(2.5, abs=0.05)
 
 
 @pytest.mark.parametrize("seed", range(3))
