@@ -25,15 +25,23 @@ ACCURACY = 0.001  # of a value: sums over samples of 1 to 2 ms are no better
 
 def settled(model: Model, known: Knowledge, runs: Sequence[Run]) -> Knowledge:
     """`known`, fitted again by predictions of `runs`; `model` is the machine as data sheets tell it."""
-    names = tuple(known.estimates)
     try:
-        sharper = refit(known.model, runs, free=names, priors={name: default_prior(model, name) for name in names})
+        sharper = _predicting(model, known.model, tuple(known.estimates), runs)
     except PneumoError:
         return known
     believed = _cost(sharper, runs) < AT_NOISE
     estimates = {name: _joined(one, sharper.estimates[name], believed) for name, one in known.estimates.items()}
     values = {name: one.value for name, one in estimates.items()}
     return replace(known, model=known.model.with_parameters(values), estimates=estimates)
+
+
+def _predicting(model: Model, begin: Model, names: tuple[str, ...], runs: Sequence[Run]) -> Refit:
+    """Predictions of `runs` fitted from `begin`, within what data sheets say.
+
+    `begin` was fitted to the same runs: priors about it would count them twice, and hold what data sheets tell better.
+    """
+    priors = {name: default_prior(model, name) for name in names}
+    return refit(begin, runs, free=names, priors=priors, centres={name: model[name] for name in names})
 
 
 def _cost(sharper: Refit, runs: Sequence[Run]) -> float:
