@@ -246,7 +246,7 @@ def constant_voltages(model: Model, rig: SimulatedRig) -> tuple[dict[str, float]
     programme = make_programme("constant-voltage", model)
     programme = safe(programme, [rig.truth]) or programme
     done = replace(rig, seed=rig.seed + 1000, position=0.0).perform(programme, (), "constant")
-    if not done.recordings:
+    if not done.complete:
         return None, done.seconds
     try:
         return knowledge(model, [as_run(one, model, ()) for one in done.recordings]).deviations, done.seconds
