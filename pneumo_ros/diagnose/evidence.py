@@ -240,7 +240,7 @@ class RunEvidence:
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed at that moment.
 
-        Less what a slip lies below it for other reasons, `lowered`. A position that is late shows the slip late.
+        More by `lowered`, what the slip lies below it for other reasons. A position that is late shows the slip late.
         """
         if not self.breakaways:
             return np.empty(0)
