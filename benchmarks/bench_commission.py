@@ -25,6 +25,7 @@ machine worn by up to 20 %, known to 12 %.
 
 import argparse
 import itertools
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -149,7 +150,7 @@ def limits(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig
 
 def rigs(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig] = rig_of) -> None:
     """Whole commissionings: predicted and achieved deviations, coverage, and the constant voltages beside them."""
-    ratios, inside, narrower, over_all, spent, moved, outside = [], [], [], [], [], [], []
+    ratios, inside, narrower, over_all, spent, moved = [], [], [], [], [], []
     each: dict[str, list[float]] = {}
     for seed in seeds:
         rig = make(model, seed)
@@ -163,15 +164,13 @@ def rigs(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig] 
         spent.append(time.perf_counter() - begin)
         moved.append(found.seconds)
         ratios += [move.ratio for move in found.moves if move.predicted]
-        for name, one in found.knowledge.estimates.items():
-            if one.determined:
-                inside.append(one.low <= rig.truth[name] <= one.high)
-        for name, one in found.knowledge.estimates.items():
-            if one.determined and not one.low <= rig.truth[name] <= one.high:
-                off = (one.value - rig.truth[name]) / one.std
-                outside.append(
-                    f"    rig {seed}: {name} {one.value:.4g}, truth {rig.truth[name]:.4g}, {off:+.1f} deviations"
-                )
+        own = {
+            name: one.low <= rig.truth[name] <= one.high
+            for name, one in found.knowledge.estimates.items()
+            if one.determined
+        }
+        inside += own.values()
+        missed = [name for name, held in own.items() if not held]
         usual, seconds = constant_voltages(model, rig)
         beside = "the rig stopped the 16 constant voltages"
         if usual is not None:
@@ -185,15 +184,19 @@ def rigs(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig] 
         told = np.median([move.ratio for move in found.moves if move.predicted] or [np.nan])
         print(
             f"  rig {seed}: {found.seconds:.0f} s of moves, {spent[-1]:.0f} s of computing, deviations {told:.2f} "
-            f"times the predicted ones; {beside}",
-            flush=True,
+            f"times the predicted ones; truth inside {sum(own.values())} of {len(own)}; {beside}"
         )
+        for name in missed:
+            one, true = found.knowledge.estimates[name], rig.truth[name]
+            print(
+                f"    outside: {name} {one.value:.4g}, truth {true:.4g}, {(one.value - true) / one.std:+.1f} deviations"
+            )
+        sys.stdout.flush()
     if not spent:
         return
     low, middle, high = np.quantile(ratios, [0.05, 0.5, 0.95])
     print(f"achieved over predicted deviations: median {middle:.2f}, 90 % of moves {low:.2f} to {high:.2f}")
-    print(f"truth inside the 95 % interval: {sum(inside)} of {len(inside)} determined parameters; outside:")
-    print("\n".join(outside))
+    print(f"truth inside the 95 % interval: {sum(inside)} of {len(inside)} determined parameters")
     if narrower:
         print(
             f"deviations of the 16 constant voltages over those here: median {np.median(over_all):.1f} over all "
@@ -243,7 +246,7 @@ def constant_voltages(model: Model, rig: SimulatedRig) -> tuple[dict[str, float]
     programme = make_programme("constant-voltage", model)
     programme = safe(programme, [rig.truth]) or programme
     done = replace(rig, seed=rig.seed + 1000, position=0.0).perform(programme, (), "constant")
-    if not done.recordings:
+    if not done.complete:
         return None, done.seconds
     try:
         return knowledge(model, [as_run(one, model, ()) for one in done.recordings]).deviations, done.seconds

@@ -21,6 +21,7 @@ from pneumo_ros.diagnose.hypothesis import (
 )
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.physical import physical
+from pneumo_ros.shooting.problem import FINE, small_step
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the resid
 class Known:
     """Priors of the free parameters: centres and standard deviations; arrays (free,).
 
-    `step`: finite-difference step of each parameter.
+    `step`: finite-difference step of each parameter where its value is as large as usual; elsewhere it is smaller.
     """
 
     names: tuple[str, ...]
@@ -71,7 +72,8 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
     """Residual (residuals,) of `model`, and its derivative (residuals, free) by each free parameter per prior."""
     ends = np.array([model.specification(n).high for n in known.names])
     here = np.array([model[n] for n in known.names])
-    steps = np.where(here + known.step > ends, -known.step, known.step)
+    steps = small_step(known.step, here, known.centre, FINE)
+    steps = np.where(here + steps > ends, -steps, steps)
     r = residuals(evidence, model, [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))])
     return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 

@@ -66,10 +66,13 @@ class Evidence:
     def __len__(self) -> int:
         return len(self.noise)
 
-    def with_breakaways(self, noise: Sequence[Array]) -> "Evidence":
-        """The same with another noise of the breakaways (breakaways,) [N] of each run; infinite: it does not count."""
+    def with_breakaways(self, noise: Sequence[Array], lowered: Sequence[Array]) -> "Evidence":
+        """The same with another noise of the breakaways (breakaways,) [N] of each run; infinite: it does not count.
+
+        lowered: how far [N] each of them is held to lie below static friction.
+        """
         other = copy(self)
-        other._index([part.with_breakaways(own) for part, own in zip(self.by_run, noise, strict=True)])
+        other._index([part.with_breakaways(*own) for part, *own in zip(self.by_run, noise, lowered, strict=True)])
         other.amplification = lru_cache(4)(other._amplification)
         return other
 
@@ -178,10 +181,12 @@ class RunEvidence:
         rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, ends, strict=True)]
         self.rested = np.array(rested, dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
+        self.lowered = np.zeros(len(self.breakaways))
 
-    def with_breakaways(self, noise: Array) -> "RunEvidence":
-        """The same with another noise of the breakaways (breakaways,) [N]; infinite: it does not count."""
+    def with_breakaways(self, noise: Array, lowered: Array) -> "RunEvidence":
+        """The same with another noise of the breakaways (breakaways,) [N], and how far they lie below the level."""
         other = copy(self)
+        other.lowered = lowered
         other.families = [*self.families[:-1], replace(self.families[-1], noise=noise, usable=np.isfinite(noise))]
         return other
 
@@ -235,7 +240,7 @@ class RunEvidence:
     def _slips(self, model: Model, q: Array, states: Array) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed at that moment.
 
-        A position that is late shows the slip late.
+        More by `lowered`, what the slip lies below it for other reasons. A position that is late shows the slip late.
         """
         if not self.breakaways:
             return np.empty(0)
@@ -249,7 +254,7 @@ class RunEvidence:
         ]
         there = states[self.rested].copy()
         there[:, 1] = self.direction * _CREEP
-        return np.asarray(np.array(largest) - self._see(model, q, there, self.rested)["static_level"])
+        return np.asarray(np.array(largest) + self.lowered - self._see(model, q, there, self.rested)["static_level"])
 
 
 def _earlier(inner: slice, late: int) -> slice:

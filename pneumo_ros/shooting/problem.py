@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 NOISE_TAIL = 4.0  # noise deviations: beyond, the loss of an error is linear
 _PROBE, _LEAST = 1e-2, 1e-2  # of the prior, a step; of the centre, the least value that steps are shares of
-_FINE, _COARSE = 0.01, 0.1  # of a value, largest step; where valves open and close, the cost has stairs
+FINE, _COARSE = 0.01, 0.1  # of a value, largest step; where valves open and close, the cost has stairs
 _BENT = 5e-3  # share of the cost beyond noise: least gain for a further step of a model that lacks an effect
 
 
@@ -32,13 +32,20 @@ class Unknowns:
     def steps(self, theta: Array, most: float) -> Array:
         """Finite-difference steps: a hundredth of the prior, away from a bound and never across the other.
 
-        At most a share `most` of the value, taken as a hundredth of the centre at least; a prior may be many times as
-        wide as the value. Where the centre is 0, the prior alone says what is a small step.
+        At most a share `most` of the value, as `small_step` says; a prior may be many times as wide as the value. Where
+        the centre is 0, the prior alone says what is a small step.
         """
-        size = np.maximum(np.abs(theta), _LEAST * np.abs(self.centre))
-        steps = np.minimum(_PROBE * self.prior, np.where(self.centre != 0.0, most * size, np.inf))
-        steps = np.minimum(steps, 0.5 * (self.high - self.low))
+        steps = np.minimum(small_step(_PROBE * self.prior, theta, self.centre, most), 0.5 * (self.high - self.low))
         return np.where(theta + steps > self.high, -steps, steps)
+
+
+def small_step(step: Array, theta: Array, centre: Array, most: float) -> Array:
+    """Finite-difference steps (free,), at most a share `most` of each value; where the centre is 0, as they were.
+
+    A value is taken as a hundredth of its centre at least.
+    """
+    size = np.maximum(np.abs(theta), _LEAST * np.abs(centre))
+    return np.asarray(np.minimum(step, np.where(centre != 0.0, most * size, np.inf)))
 
 
 def largest_step(model: Model) -> float:
@@ -46,7 +53,7 @@ def largest_step(model: Model) -> float:
 
     There the cost has stairs; elsewhere so long a step would mix slopes of both sides of a Stribeck curve.
     """
-    return _COARSE if model.composition.jumping else _FINE
+    return _COARSE if model.composition.jumping else FINE
 
 
 @dataclass(frozen=True)

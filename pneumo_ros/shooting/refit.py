@@ -60,6 +60,7 @@ def refit(
     *,
     free: Sequence[str] | None = None,
     priors: Mapping[str, float] | None = None,
+    centres: Mapping[str, float] | None = None,
     segment: float = SEGMENT,
     share: float = 1.0,
     start: Refit | None = None,
@@ -68,16 +69,18 @@ def refit(
 ) -> Refit:
     """Refit `free` parameters (default `default_free`) of a model to all runs together.
 
-    `priors` maps dotted names to standard deviations in the parameter's unit (default `default_prior`). `segment` [s]
-    is the length of the shooting segments, `share` the share of them that is used, evenly drawn. With `start`, an
-    earlier refit to the same runs and `segment`, parameters start at its result, and keep its priors unless others are
-    given; a few iterations then show the change by another effect. Raises UsageError for unknown names,
-    DataError when no run holds a segment, NumericalError when no prediction is finite.
+    `priors` maps dotted names to standard deviations in the parameter's unit (default `default_prior`), `centres` to
+    what was known before these runs (default: the value of `model`, where the fit begins). `model` fitted to the same
+    runs needs its centres: about its own values, the priors would count the runs twice. `segment` [s] is the length of
+    the shooting segments, `share` the share of them that is used, evenly drawn. With `start`, an earlier refit to the
+    same runs and `segment`, parameters start at its result, and keep its priors unless others are given; a few
+    iterations then show the change by another effect. Raises UsageError for unknown names, DataError when no run holds
+    a segment, NumericalError when no prediction is finite.
     """
     names = default_free(model) if free is None else tuple(free)
     segments = cut(model, on_one_clock(runs), segment)
     return refit_segments(
-        model, segments, names, priors or {}, share=share, start=start, threads=threads, progress=progress
+        model, segments, names, priors or {}, centres, share=share, start=start, threads=threads, progress=progress
     )
 
 
@@ -87,6 +90,7 @@ def refit_segments(
     segments: Segments,
     free: Sequence[str],
     priors: Mapping[str, float],
+    centres: Mapping[str, float] | None = None,
     *,
     share: float = 1.0,
     start: Refit | None = None,
@@ -94,7 +98,7 @@ def refit_segments(
     progress: Progress | None = None,
 ) -> Refit:
     """Refit `free` parameters to the given segments; otherwise as `refit`."""
-    unknowns = unknowns_of(model, tuple(free), priors, start)
+    unknowns = unknowns_of(model, tuple(free), priors, start, centres)
     if not len(segments):
         raise DataError("no segment without a gap in any of the recordings; give a shorter --segment")
     count = max(round(share * len(segments)), 1)
@@ -128,8 +132,9 @@ def default_prior(model: Model, name: str) -> float:
 
 
 def unknowns_of(
-    model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None
-) -> Unknowns:
+    model: Model, names: tuple[str, ...], priors: Mapping[str, float], start: Refit | None = None,
+    centres: Mapping[str, float] | None = None,
+) -> Unknowns:  # fmt: skip
     """The unknowns of a refit of the named parameters; otherwise as `refit`. UsageError for no name or a prior of 0."""
     known = start.estimates if start else {}
     prior = [priors.get(n, known[n].prior if n in known else default_prior(model, n)) for n in names]
@@ -140,10 +145,11 @@ def unknowns_of(
             unit = model.specification(name).unit
             raise UsageError(f"the prior of {name} is {width:g} {unit}; a refit takes standard deviations above 0")
     specs = [model.specification(name) for name in names]
+    begin = {n: known[n].before if n in known else model[n] for n in names}
     return Unknowns(
         names=names,
-        begin=np.array([known[n].before if n in known else model[n] for n in names]),
-        centre=np.array([known[n].before if n in known else model[n] for n in names]),
+        begin=np.array(list(begin.values())),
+        centre=np.array([(centres or {}).get(n, value) for n, value in begin.items()]),
         prior=np.array(prior),
         low=np.array([s.low for s in specs]),
         high=np.array([s.high for s in specs]),

@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.diagnose.basefit import ROUNDS_EACH, Known, fit_base
+from pneumo_ros.diagnose.basefit import ROUNDS_EACH, Known, fit_base, slopes
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import OVERLAP
 from pneumo_ros.plant import Model, load_model
@@ -48,6 +48,19 @@ def test_a_size_at_the_end_of_its_range_does_not_hold_what_trades_with_it() -> N
 
 COULOMB = "lugre_friction.coulomb_friction"
 COLUMN = list(load_model("axis").parameters).index(COULOMB)
+
+
+GAIN = "arctan_flow.voltage_gain"
+
+
+def test_a_slope_is_that_at_the_value_also_where_it_is_small_beside_its_default() -> None:
+    """The default gain is 2 1/V; a valve of 0 to 10 V has 0.01 1/V, and the flow bends over it."""
+    axis = load_model("axis").with_parameters({GAIN: 0.01})
+    column, volts = list(axis.parameters).index(GAIN), np.array([1.0, 100.0])
+    evidence: Any = SimpleNamespace(residuals=lambda model, values: np.arctan(values[:, column, None] * volts))
+    known = Known((GAIN,), np.array([0.1]), np.array([1.0]), np.array([0.0005]))
+    true = volts / (1.0 + (0.01 * volts) ** 2)
+    assert np.allclose(slopes(cast(Evidence, evidence), axis, known)[1][:, 0], true, rtol=0.01)
 
 
 class Alternating:

@@ -53,6 +53,17 @@ def test_steps_turn_back_at_a_bound_and_have_a_size_about_zero() -> None:
     assert np.all(finite + steps <= unknowns.high)
 
 
+def test_a_prior_stays_where_it_is_when_a_fit_begins_elsewhere() -> None:
+    """A prior about the start would count the recordings again with every fit."""
+    sheet = load_model("axis")
+    begun = sheet.with_parameters({GAIN: 2.0 * sheet[GAIN]})
+    unknowns = unknowns_of(begun, default_free(begun), {}, centres={GAIN: sheet[GAIN]})
+    k = unknowns.names.index(GAIN)
+    assert (unknowns.begin[k], unknowns.centre[k]) == (2.0 * sheet[GAIN], sheet[GAIN])
+    others = np.arange(len(unknowns.names)) != k
+    np.testing.assert_array_equal(unknowns.centre[others], unknowns.begin[others])
+
+
 def test_steps_are_coarser_where_valves_open_and_close() -> None:
     assert largest_step(sheet("pulses")) == pytest.approx(0.1)
     assert largest_step(sheet("regulators")) == largest_step(load_model("axis")) == pytest.approx(0.01)
