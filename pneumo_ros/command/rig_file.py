@@ -1,12 +1,15 @@
 """--rig: a file that says of a rig which machine it is and how its recordings are wired."""
 
 import argparse
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.units import TURN
 
 if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
     from pneumo_ros.reading.rig_file import Rig
 
 
@@ -21,9 +24,12 @@ def read_rig(path: str) -> "Rig":
 
 
 def rig_text(
-    machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, closed: float | None = None
+    machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, model: "Model", closed: float | None
 ) -> str:
-    """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve."""
+    """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve.
+
+    The limits stand in it as a comment: the whole stroke of the `model`, in mm, or degrees where it turns.
+    """
     from pneumo_ros.plant.axes_section import from_anywhere  # slow; --help does not need it
 
     machine = from_anywhere(machine)
@@ -32,6 +38,8 @@ def rig_text(
         if closed is None
         else f"  closed: {closed:g}V  # the command that closes the valve\n"
     )
+    unit, factor = ("deg", math.pi / 180.0) if model.coordinate == TURN else ("mm", 1e-3)
+    end = f"{0.5 * model['piston.stroke'] / factor:.4g}{unit}"
     return (
         f"# A rig: its machine, and the wiring of its recordings. {origin}\n"
         "rig:\n"
@@ -40,14 +48,15 @@ def rig_text(
         f"  joint: {joint}\n"
         f"  read_as: {','.join(words)}  # as --read-as: units, gauge, swapped, reversed, zero, closed signal\n"
         f"{said}"
+        f"  # limits: -{end}..{end}  # the ends of the stroke; live work keeps to the positions named here\n"
     )
 
 
 def apply_rig(options: argparse.Namespace) -> str:
     """Take what the options do not say from the file of --rig, if there is one; a sentence where --model differs.
 
-    Raises DataError when it cannot be read, UsageError when it is invalid or says something else of the wiring than an
-    option.
+    Raises DataError when it cannot be read, UsageError when it is invalid, says something else of the wiring than an
+    option, or limits in degrees a machine that moves along a line.
     """
     path = getattr(options, "rig_file", None)
     options.rig_said = None
@@ -63,9 +72,18 @@ def apply_rig(options: argparse.Namespace) -> str:
         if value and hasattr(options, option):
             setattr(options, option, value)
     sentence = _machine(options, rig.machine)
+    if rig.limits and rig.limits.coordinate and hasattr(options, "model"):
+        machine = _chosen(options)
+        rig.limits.along(machine.coordinate, machine.name)
     if rig.closed is not None and hasattr(options, "read_as"):
         options.read_as = _read_as(options, rig.closed)
     return sentence
+
+
+def _chosen(options: argparse.Namespace) -> "Model":
+    from pneumo_ros.plant import load_model
+
+    return load_model(getattr(options, "model", "axis"), tuple(getattr(options, "effects", ())))
 
 
 def _machine(options: argparse.Namespace, said: str) -> str:
@@ -84,11 +102,8 @@ def _machine(options: argparse.Namespace, said: str) -> str:
 
 def _read_as(options: argparse.Namespace, closed: float) -> str:
     """Words of --read-as with which the machine's valve is closed at `closed` [V]."""
-    from pneumo_ros.plant import load_model
     from pneumo_ros.plant.closed import closed_signal
     from pneumo_ros.reading.rig_file import with_closed
     from pneumo_ros.records.corrections import parse_words
 
-    words = parse_words(options.read_as)
-    model = load_model(getattr(options, "model", "axis"), tuple(getattr(options, "effects", ())))
-    return ",".join(with_closed(words, closed, closed_signal(model)))
+    return ",".join(with_closed(parse_words(options.read_as), closed, closed_signal(_chosen(options))))

@@ -81,7 +81,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     job = _job(options, console, model)
     wired = job.wiring()
     console.say(wiring_text(wired))
-    rig = _write_rig(options, wired, console)
+    rig = _write_rig(options, model, wired, console)
     if wired.faults and not options.as_wired:
         console.note(f"Mend that and call the same again with another --folder; or add --as-wired to go on with {rig}")
     stopped = bool(wired.faults and not options.as_wired) or not wired.certain
@@ -129,12 +129,12 @@ def _job(options: argparse.Namespace, console: Console, model: "Model") -> "Comm
     return Commissioning(model, perform, words, sensors, options.minutes, console.note)
 
 
-def _write_rig(options: argparse.Namespace, wired: "Wired", console: Console) -> str:
+def _write_rig(options: argparse.Namespace, model: "Model", wired: "Wired", console: Console) -> str:
     """The rig file beside the machine file; its path."""
     path = _beside(options.out, "_rig.yaml")
     machine = str(Path(options.out).resolve())  # to be written
     words, origin = wired.words, "As a commissioning found it."
-    text = rig_text(machine, options.namespace or "", options.joint or "", words, origin, options.closes)
+    text = rig_text(machine, options.namespace or "", options.joint or "", words, origin, model, options.closes)
     write_whole(path, text)
     console.note(f"Wiring written to {path}, for --rig")
     return path
