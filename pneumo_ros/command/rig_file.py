@@ -24,22 +24,28 @@ def read_rig(path: str) -> "Rig":
 
 
 def rig_text(
-    machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, model: "Model", closed: float | None
+    machine: str,
+    namespace: str,
+    joint: str,
+    words: Sequence[str],
+    origin: str,
+    model: "Model",
+    closed: float | None,
+    said: "Rig | None" = None,
 ) -> str:
     """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve.
 
-    The limits stand in it as a comment: the whole stroke of the `model`, in mm, or degrees where it turns.
+    Safe state, range and limits are those that another file has `said`; its topics are of recordings by another
+    program, and this file goes with our own. Without limits, the stroke of the `model` stands there as a comment.
     """
     from pneumo_ros.plant.axes_section import from_anywhere  # slow; --help does not need it
 
     machine = from_anywhere(machine)
-    said = (
+    closes = (
         "  # closed: 0V  # the command that closes the valve, by its data sheet: live work needs it\n"
         if closed is None
         else f"  closed: {closed:g}V  # the command that closes the valve\n"
     )
-    unit, factor = ("deg", math.pi / 180.0) if model.coordinate == TURN else ("mm", 1e-3)
-    end = f"{0.5 * model['piston.stroke'] / factor:.4g}{unit}"
     return (
         f"# A rig: its machine, and the wiring of its recordings. {origin}\n"
         "rig:\n"
@@ -47,9 +53,23 @@ def rig_text(
         f"  namespace: {namespace}\n"
         f"  joint: {joint}\n"
         f"  read_as: {','.join(words)}  # as --read-as: units, gauge, swapped, reversed, zero, closed signal\n"
-        f"{said}"
-        f"  # limits: -{end}..{end}  # the ends of the stroke; live work keeps to the positions named here\n"
+        f"{closes}{_live_lines(said, model)}"
     )
+
+
+def _live_lines(said: "Rig | None", model: "Model") -> str:
+    lines = list[str]()
+    if said is not None and said.safe is not None:
+        lines.append(f"safe: {said.safe:g}V")
+    if said is not None and said.range is not None:
+        lines.append(f"range: {said.range[0]:g}V..{said.range[1]:g}V")
+    if said is not None and said.limits is not None:
+        lines.append(f"limits: {said.limits.text}")
+    else:
+        unit, factor = ("deg", math.pi / 180.0) if model.coordinate == TURN else ("mm", 1e-3)
+        end = f"{0.5 * model['piston.stroke'] / factor:.4g}{unit}"
+        lines.append(f"# limits: -{end}..{end}  # the ends of the stroke; live work keeps to the positions named here")
+    return "".join(f"  {line}\n" for line in lines)
 
 
 def apply_rig(options: argparse.Namespace) -> str:
