@@ -110,10 +110,19 @@ def test_priors_follow_from_torque_and_stroke() -> None:
 
 
 def test_a_usual_size_that_only_a_range_gives_is_one_of_every_radius() -> None:
-    """A tenth of 20 per newton at 1 m; the range allowed is that of 10 mm, a hundred times as wide."""
-    larger = VANE.with_effects([*VANE.effects, "load_dependent_friction"])
-    assert larger.specification("load_dependent_friction.growth").high == pytest.approx(2000.0)
-    assert larger.usual_size("load_dependent_friction.growth") == pytest.approx(2.0)
+    """A tenth of 40 per metre of stiffness at 10 mm; the range allowed is that of 1 m, a hundred times as wide."""
+    larger = VANE.with_effects([*VANE.effects, "spring_load"])
+    assert larger.specification("spring_load.progression").high == pytest.approx(20.0)
+    assert larger.usual_size("spring_load.progression") == pytest.approx(0.04)
+
+
+def test_friction_by_load_is_of_one_usual_size_at_the_usual_force_of_every_machine() -> None:
+    """Its growth q: q F is the usual rise k of 0.1 on a line, and where the torque is a tenth of the force."""
+    effects = [*AXIS.effects, "load_dependent_friction"]
+    line = AXIS.with_effects(effects).usual_size("load_dependent_friction.growth")
+    assert line * AXIS["lugre_friction.static_friction"] == pytest.approx(0.1)
+    vane = VANE.with_effects([*VANE.effects, "load_dependent_friction"])  # of 0.1 N m where the other has 1 N
+    assert vane.usual_size("load_dependent_friction.growth") * 0.1 == pytest.approx(line)
 
 
 def test_a_mass_along_a_line_has_at_least_a_gram() -> None:
