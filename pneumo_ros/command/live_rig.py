@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.units import LINE
 
 if TYPE_CHECKING:
     from pneumo_ros.experiment.programme import Programme
@@ -35,10 +36,14 @@ def live_settings(options: argparse.Namespace) -> dict[str, object]:
 
 
 def declared(programme: "Programme", options: argparse.Namespace) -> "Programme":
-    """The programme inside the limits of the rig; a machine file that nobody chose does not say how a valve closes."""
+    """The programme inside the limits of the rig; a machine file that nobody chose does not say how a valve closes.
+
+    Raises UsageError for limits that are angles: programmes are in m.
+    """
     from pneumo_ros.experiment.programme import within
 
-    programme = within(programme, rig_said(options).limits)
+    if (limits := rig_said(options).limits) is not None:
+        programme = within(programme, limits.along(LINE, programme.machine))
     return replace(programme, says_closed=False) if options.model == DEFAULT else programme
 
 

@@ -1,12 +1,15 @@
 """--rig: a file that says of a rig which machine it is and how its recordings are wired."""
 
 import argparse
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.units import TURN
 
 if TYPE_CHECKING:
+    from pneumo_ros.plant import Model
     from pneumo_ros.reading.rig_file import Rig
 
 
@@ -21,13 +24,24 @@ def read_rig(path: str) -> "Rig":
 
 
 def rig_text(
-    machine: str, namespace: str, joint: str, words: Sequence[str], origin: str, closed: float | None = None
+    machine: str,
+    namespace: str,
+    joint: str,
+    words: Sequence[str],
+    origin: str,
+    model: "Model",
+    closed: float | None,
+    said: "Rig | None" = None,
 ) -> str:
-    """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve."""
+    """The rig file; `origin`: the end of its first line, where the wiring comes from; `closed` [V] closes the valve.
+
+    Safe state, range and limits are those that another file has `said`; its topics are of recordings by another
+    program, and this file goes with our own. Without limits, the stroke of the `model` stands there as a comment.
+    """
     from pneumo_ros.plant.axes_section import from_anywhere  # slow; --help does not need it
 
     machine = from_anywhere(machine)
-    said = (
+    closes = (
         "  # closed: 0V  # the command that closes the valve, by its data sheet: live work needs it\n"
         if closed is None
         else f"  closed: {closed:g}V  # the command that closes the valve\n"
@@ -39,15 +53,30 @@ def rig_text(
         f"  namespace: {namespace}\n"
         f"  joint: {joint}\n"
         f"  read_as: {','.join(words)}  # as --read-as: units, gauge, swapped, reversed, zero, closed signal\n"
-        f"{said}"
+        f"{closes}{_live_lines(said, model)}"
     )
+
+
+def _live_lines(said: "Rig | None", model: "Model") -> str:
+    lines = list[str]()
+    if said is not None and said.safe is not None:
+        lines.append(f"safe: {said.safe:g}V")
+    if said is not None and said.range is not None:
+        lines.append(f"range: {said.range[0]:g}V..{said.range[1]:g}V")
+    if said is not None and said.limits is not None:
+        lines.append(f"limits: {said.limits.text}")
+    else:
+        unit, factor = ("deg", math.pi / 180.0) if model.coordinate == TURN else ("mm", 1e-3)
+        end = f"{0.5 * model['piston.stroke'] / factor:.4g}{unit}"
+        lines.append(f"# limits: -{end}..{end}  # the ends of the stroke; live work keeps to the positions named here")
+    return "".join(f"  {line}\n" for line in lines)
 
 
 def apply_rig(options: argparse.Namespace) -> str:
     """Take what the options do not say from the file of --rig, if there is one; a sentence where --model differs.
 
-    Raises DataError when it cannot be read, UsageError when it is invalid or says something else of the wiring than an
-    option.
+    Raises DataError when it cannot be read, UsageError when it is invalid, says something else of the wiring than an
+    option, or limits in degrees a machine that moves along a line.
     """
     path = getattr(options, "rig_file", None)
     options.rig_said = None
@@ -63,9 +92,18 @@ def apply_rig(options: argparse.Namespace) -> str:
         if value and hasattr(options, option):
             setattr(options, option, value)
     sentence = _machine(options, rig.machine)
+    if rig.limits and rig.limits.coordinate and hasattr(options, "model"):
+        machine = _chosen(options)
+        rig.limits.along(machine.coordinate, machine.name)
     if rig.closed is not None and hasattr(options, "read_as"):
         options.read_as = _read_as(options, rig.closed)
     return sentence
+
+
+def _chosen(options: argparse.Namespace) -> "Model":
+    from pneumo_ros.plant import load_model
+
+    return load_model(getattr(options, "model", "axis"), tuple(getattr(options, "effects", ())))
 
 
 def _machine(options: argparse.Namespace, said: str) -> str:
@@ -84,11 +122,8 @@ def _machine(options: argparse.Namespace, said: str) -> str:
 
 def _read_as(options: argparse.Namespace, closed: float) -> str:
     """Words of --read-as with which the machine's valve is closed at `closed` [V]."""
-    from pneumo_ros.plant import load_model
     from pneumo_ros.plant.closed import closed_signal
     from pneumo_ros.reading.rig_file import with_closed
     from pneumo_ros.records.corrections import parse_words
 
-    words = parse_words(options.read_as)
-    model = load_model(getattr(options, "model", "axis"), tuple(getattr(options, "effects", ())))
-    return ",".join(with_closed(words, closed, closed_signal(model)))
+    return ",".join(with_closed(parse_words(options.read_as), closed, closed_signal(_chosen(options))))

@@ -87,9 +87,9 @@ class Programme:
         return self.high - self.low
 
 
-def within(programme: Programme, limits: tuple[float, float] | None) -> Programme:
+def within(programme: Programme, limits: tuple[float, float]) -> Programme:
     """The programme inside `limits` [m] of a rig, too; UsageError where that leaves no room."""
-    if limits is None or programme.blind:
+    if programme.blind:
         return programme
     low, high = max(programme.low, limits[0]), min(programme.high, limits[1])
     if low >= high:

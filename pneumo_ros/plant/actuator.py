@@ -14,7 +14,7 @@ SIDES = {"a": 1.0, "b": -1.0}  # side -> 1 where its volume grows with the posit
 # what effects read of an open side, by their names with the side in braces
 _OPEN = {
     "p_{}": "p_atm", "volume_{}": "1000.0", "valve_flow_{}": "0.0", "port_flow_{}": "0.0", "flow_{}": "0.0",
-    "added_volume_{}": "0.0", "heat_{}": "0.0",
+    "added_volume_{}": "0.0", "heat_{}": "0.0", "touched_{}": "1.0",
 }  # fmt: skip
 
 
@@ -72,7 +72,12 @@ class Chamber:
 
 
 class Actuator(Effect):
-    """Base of all actuators; subclasses are never instantiated."""
+    """Base of all actuators; subclasses are never instantiated.
+
+    `outputs` of an actuator gives the walls that the gas touches, over those at mid stroke, as `touched_a` and
+    `touched_b`: it alone knows their shape. A chamber of one cross-section A with the circumference U has
+    S = 2 A + (U / A) V, both ends and the walls along the way (geometry).
+    """
 
     chambers: ClassVar[tuple[Chamber, ...]] = ()
     open_side: ClassVar[dict[str, str]] = {}  # name -> constant or signal that takes its place

@@ -98,6 +98,8 @@ _TABLE = (
     Signal("added_volume_b", "sum", "m3", "0.0", "added to the volume of chamber b"),
     Signal("heat_a", "sum", "W", "0.0", "heat flow into the gas of chamber a"),
     Signal("heat_b", "sum", "W", "0.0", "heat flow into the gas of chamber b"),
+    Signal("touched_a", "single", "1", "1.0", "walls that the gas of chamber a touches, over those at mid stroke"),
+    Signal("touched_b", "single", "1", "1.0", "walls that the gas of chamber b touches, over those at mid stroke"),
     # piston and friction
     Signal("drive", "single", "N", "U", "drive force on the piston: from the chambers, or the input itself"),
     Signal("force", "sum", "N", "0.0", "load force on the piston, against positive velocity"),

@@ -8,7 +8,7 @@ rig:
   closed: 5V                      # the command that closes the valve
   safe: 5V                        # sent when measurements stop and at the end; without it, the closed signal
   range: 0V..10V                  # commands that the valve takes
-  limits: -80mm..80mm             # positions from mid stroke that live work keeps to
+  limits: -80mm..80mm             # positions from mid stroke that live work keeps to; -60deg..60deg where it turns
   topics: {joint_states: /plc/encoder, chamber_a/pressure: "/plc/values:data[3]"}   # of its recordings
 """
 
@@ -24,15 +24,42 @@ from pneumo_ros.plant import Model
 from pneumo_ros.plant.axes_section import place_of
 from pneumo_ros.plant.closed import closed_signal
 from pneumo_ros.reading.read import ReadOptions
-from pneumo_ros.records.corrections import parse_words, wiring
+from pneumo_ros.records.corrections import ANGLE_UNITS, LENGTH_UNITS, parse_words, wiring
 from pneumo_ros.records.foreign_topics import VALUES, parse_place
+from pneumo_ros.units import COORDINATES, LINE, TURN
 from pneumo_ros.yaml_text import load_yaml
 
 HOW = "type: pneumo rig check BAG --model MACHINE --out rig.yaml"
-VOLTS, METRES = {"": 1.0, "V": 1.0, "mV": 1e-3}, {"": 1.0, "m": 1.0, "mm": 1e-3}
+VOLTS = {"": 1.0, "V": 1.0, "mV": 1e-3}
+POSITIONS = {LINE: {"m": 1.0, **LENGTH_UNITS}, TURN: {"rad": 1.0, **ANGLE_UNITS}}  # SI in one unit
+_LIMITS = {LINE: "-80mm..80mm", TURN: "-60deg..60deg"}  # examples
 _TEXTS = ("machine", "namespace", "joint", "read_as")
 NULL_OFFSET = 0.5  # V, by which a valve's own zero may differ from the signal that its data sheet names
 _SPAN = ".."  # between the ends of a range
+
+
+@dataclass(frozen=True)
+class Travel:
+    """Positions from mid stroke that live work keeps to, in the dimension that the file gives them."""
+
+    low: float  # [m], or [rad] where `coordinate` is "rotation"
+    high: float
+    coordinate: str = ""  # "translation" or "rotation"; empty for plain numbers, which are of any machine
+    text: str = field(default="", compare=False)  # as the file has it
+
+    def along(self, coordinate: str, machine: str) -> tuple[float, float]:
+        """The two ends in m, or in rad, for the `machine` of that name that moves along a line, or turns.
+
+        Raises UsageError for lengths of a machine that turns, and for angles of one that moves along a line.
+        """
+        if self.coordinate not in ("", coordinate):
+            given, moves = ("lengths", "turns") if coordinate == TURN else ("angles", "moves along a line")
+            raise UsageError(
+                f"the rig file's limits are {given}, {self.text}, and {machine} {moves}: its limits are in "
+                f"{', '.join(POSITIONS[coordinate])}. Write limits: {_LIMITS[coordinate]} into the rig file, say, or "
+                f"name another machine"
+            )
+        return self.low, self.high
 
 
 @dataclass(frozen=True)
@@ -46,7 +73,7 @@ class Rig:
     closed: float | None = None  # [V]
     safe: float | None = None  # [V]
     range: tuple[float, float] | None = None  # [V]
-    limits: tuple[float, float] | None = None  # [m]
+    limits: Travel | None = None
     topics: Mapping[str, str] = field(default_factory=dict)  # name in the contract -> topic of this rig
 
 
@@ -83,9 +110,11 @@ def _rig(given: Mapping[str, Any]) -> Rig:
     parse_words(given.get("read_as", ""))
     found: dict[str, Any] = {key: given[key] for key in _TEXTS if key in given}
     found |= {key: quantity(given[key], VOLTS, key, "5V") for key in ("closed", "safe") if key in given}
-    for key, units, example in (("range", VOLTS, "0V..10V"), ("limits", METRES, "-80mm..80mm")):
-        if key in given:
-            found[key] = _span(given[key], units, key, example)
+    if "range" in given:
+        low, high, _ = _span(given["range"], VOLTS, "range", "0V..10V")
+        found["range"] = low, high
+    if "limits" in given:
+        found["limits"] = _travel(given["limits"])
     found["topics"] = _topics(given.get("topics", {}))
     rig = Rig(**found)
     for name, volts in (("closed", rig.closed), ("safe", rig.safe)):
@@ -96,6 +125,10 @@ def _rig(given: Mapping[str, Any]) -> Rig:
 
 def quantity(given: object, units: Mapping[str, float], name: str, example: str) -> float:
     """A number with its unit as text, or a number in the plain unit; UsageError for anything else."""
+    return _with_unit(given, units, name, example)[0]
+
+
+def _with_unit(given: object, units: Mapping[str, float], name: str, example: str) -> tuple[float, str]:
     text = f"{given:g}" if isinstance(given, int | float) and not isinstance(given, bool) else str(given).strip()
     number = text.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ ")
     unit = text[len(number) :].strip()
@@ -105,17 +138,29 @@ def quantity(given: object, units: Mapping[str, float], name: str, example: str)
         value = math.nan
     if not math.isfinite(value):
         raise UsageError(f"{name} is {brief(given)}; it takes a number with its unit, such as {example}")
-    return value
+    return value, unit
 
 
-def _span(given: object, units: Mapping[str, float], name: str, example: str) -> tuple[float, float]:
+def _span(given: object, units: Mapping[str, float], name: str, example: str) -> tuple[float, float, tuple[str, str]]:
+    """Two ends, in SI units, and the units they were given in."""
     parts = given if isinstance(given, list) else str(given).split(_SPAN)
     if len(parts) != 2:
         raise UsageError(f"{name} is {brief(given)}; it takes two ends, such as {example}")
-    low, high = (quantity(one, units, name, example) for one in parts)
+    (low, one), (high, other) = (_with_unit(end, units, name, example) for end in parts)
     if not low < high:
         raise UsageError(f"{name} is {brief(given)}; the first end must be below the second, such as {example}")
-    return low, high
+    return low, high, (one, other)
+
+
+def _travel(given: object) -> Travel:
+    """Limits, in any unit of positions; an end without a unit is in m, or rad, as the other one says."""
+    example = " or ".join(_LIMITS.values())
+    text = _SPAN.join(map(str, given)) if isinstance(given, list) else str(given)
+    low, high, ends = _span(given, {"": 1.0, **POSITIONS[LINE], **POSITIONS[TURN]}, "limits", example)
+    named = [one for one in COORDINATES if any(unit in POSITIONS[one] for unit in ends)]
+    if len(named) > 1:
+        raise UsageError(f"limits is {brief(given)}, a length and an angle; it takes two of one, such as {example}")
+    return Travel(low, high, "".join(named), text)
 
 
 def _topics(given: object) -> dict[str, str]:
@@ -130,6 +175,8 @@ def _topics(given: object) -> dict[str, str]:
 
 def reading_of(rig: Rig, model: Model) -> ReadOptions:
     """How recordings of the rig are read for its machine; UsageError where file and machine contradict each other."""
+    if rig.limits:
+        rig.limits.along(model.coordinate, model.name)
     words = with_closed(parse_words(rig.read_as), rig.closed, closed_signal(model))
     return ReadOptions(rig.namespace or None, rig.joint or None, words, topics=tuple(rig.topics.items()))
 

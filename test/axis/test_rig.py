@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from pneumo_ros.axis.controller import settings
+from pneumo_ros.axis.experiment.preparing import prepare
 from pneumo_ros.axis.rig import AS_OPTION, AS_PARAMETER, SETTINGS, live_rig
 from pneumo_ros.errors import UsageError
 
@@ -45,6 +46,33 @@ def test_an_assumed_dead_zone_says_nothing_of_the_closed_signal() -> None:
     values = {one.name: one.default for one in settings.SETTINGS} | limits | {"effects": ["dead_zone"]}
     found = [settings.wired_by(values, {"effects": ["dead_zone"], **one}).declared for one in (known, assumed)]
     assert found == [True, False]
+
+
+def test_a_programme_and_a_controller_keep_to_the_limits_in_their_dimension(tmp_path: Path) -> None:
+    """Both plan in m: angles, and a machine that turns, are refused before anything moves."""
+    path = rig_file(tmp_path, "{machine: axis, limits: -80mm..60mm}")
+    trials = {"rig": path, "programme": "", "model": "", "model_given": False, "experiment": "constant-voltage"}
+    trials |= {"output": str(tmp_path / "runs")}
+    programme, _ = prepare(trials, ())
+    assert (programme.low, programme.high) == (-0.08, 0.06)
+    own = {one.name: one.default for one in settings.SETTINGS} | {"rig": path}
+    brought = settings.of_a_rig(own, {})
+    assert (brought["limits.low"], brought["limits.high"]) == (-0.08, 0.06)
+    angles = tmp_path / "angles.yaml"
+    angles.write_text("rig: {machine: axis, limits: -6deg..6deg}")
+    for refusing in (
+        lambda: prepare({**trials, "rig": str(angles)}, ()),
+        lambda: settings.of_a_rig({**own, "rig": str(angles)}, {}),
+        lambda: settings.of_a_rig({**own, "rig": str(angles)}, {"effects": ["dead_zone"]}),
+    ):
+        with pytest.raises(UsageError, match=r"limits are angles, -6deg\.\.6deg, and .* moves along a line"):
+            refusing()
+    vane = tmp_path / "vane.yaml"
+    vane.write_text("rig: {machine: vane, limits: -60deg..60deg}")
+    with pytest.raises(
+        UsageError, match="laws of control plan in m and N; the machine file says 'coordinate: rotation'"
+    ):
+        settings.of_a_rig({**own, "rig": str(vane)}, {})
 
 
 def test_nothing_is_sent_until_somebody_has_said_it() -> None:

@@ -16,7 +16,7 @@ from pneumo_ros.units import LINE, ROTARY, TURN, shown, unit_along, writing
 
 VANE = load_model("vane")
 SCALE = Scale(0.1, 2.0)
-ROUND_BORE = {"heat_exchange"}  # its film follows the walls of a bore, as its docstring says
+ROUND_BORE = {"chambers", "single_acting"}  # whose walls are those of a bore, as their docstrings say
 every_effect = pytest.mark.parametrize("name", sorted(EFFECTS.keys() - ROUND_BORE))
 
 
@@ -60,6 +60,7 @@ def test_the_vane_is_that_of_the_second_simulator() -> None:
     """Which knows no units: its m are rad, its N are N m."""
     names = {"piston", "air", "rotary_vane", "dead_zone", "arctan_flow", "lugre_friction"}
     own = {n.partition(".")[2]: value for n, value in VANE.parameters.items() if n.partition(".")[0] in names}
+    del own["wall_volume"]  # no heat passes a wall here
     voltage = np.repeat([3.0, -2.5, 0.0, 1.2], 150)
     start = {"p_a": 3e5, "p_b": 3e5}
     truth = oracle.simulate(own | {"drag_coefficient": 0.0}, voltage, start, 1e-3, rtol=1e-8)
@@ -109,10 +110,19 @@ def test_priors_follow_from_torque_and_stroke() -> None:
 
 
 def test_a_usual_size_that_only_a_range_gives_is_one_of_every_radius() -> None:
-    """A tenth of 20 per newton at 1 m; the range allowed is that of 10 mm, a hundred times as wide."""
-    larger = VANE.with_effects([*VANE.effects, "load_dependent_friction"])
-    assert larger.specification("load_dependent_friction.growth").high == pytest.approx(2000.0)
-    assert larger.usual_size("load_dependent_friction.growth") == pytest.approx(2.0)
+    """A tenth of 40 per metre of stiffness at 10 mm; the range allowed is that of 1 m, a hundred times as wide."""
+    larger = VANE.with_effects([*VANE.effects, "spring_load"])
+    assert larger.specification("spring_load.progression").high == pytest.approx(20.0)
+    assert larger.usual_size("spring_load.progression") == pytest.approx(0.04)
+
+
+def test_friction_by_load_is_of_one_usual_size_at_the_usual_force_of_every_machine() -> None:
+    """Its growth q: q F is the usual rise k of 0.1 on a line, and where the torque is a tenth of the force."""
+    effects = [*AXIS.effects, "load_dependent_friction"]
+    line = AXIS.with_effects(effects).usual_size("load_dependent_friction.growth")
+    assert line * AXIS["lugre_friction.static_friction"] == pytest.approx(0.1)
+    vane = VANE.with_effects([*VANE.effects, "load_dependent_friction"])  # of 0.1 N m where the other has 1 N
+    assert vane.usual_size("load_dependent_friction.growth") * 0.1 == pytest.approx(line)
 
 
 def test_a_mass_along_a_line_has_at_least_a_gram() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from plant.catalogue import AXIS, in_python, machine
 
-from pneumo_ros.plant import Model
+from pneumo_ros.plant import Model, load_model
 
 R_T = 287.0 * 293.0
 HELD = {"piston.mass": 1e4, "lugre_friction.static_friction": 1e5}  # a sled that cannot move
@@ -152,6 +152,50 @@ def test_a_temperature_that_nothing_reads_stays_bounded() -> None:
     plain = machine("lugre_friction").with_parameters(HELD)
     _, alone = plain.follow(measured, voltage, plain.state()[4:])
     assert claimed[0.0][:, 2:4] == pytest.approx(alone[:, 2:4], rel=1e-9)
+
+
+def fade(model: Model, volume: str, y: float) -> np.ndarray:
+    """Rates [1/s] at which gas at rest behind a closed valve takes the walls' temperature, of both chambers, times V.
+
+    Without what the film's coefficient does of itself, sqrt(p T_g): over S at mid stroke it leaves S at `y`.
+    """
+    x = model.state(y=y, p_a=4e5, p_b=4e5, theta_a=-10.0, theta_b=-10.0)
+    slopes = np.ravel(in_python(model).derivatives(x, 0.0, 0.0))
+    warm = 1.0 - 10.0 / 293.0
+    swept = np.array([model["piston.area_a"], -model["piston.area_b"]]) * y
+    middle = np.array([model[f"{volume}.volume_a"], model[f"{volume}.volume_b"]])
+    rates = np.array([slopes[model.states.index(f"theta_{side}")] / 10.0 for side in "ab"])
+    return rates / model["heat_exchange.rate"] * (middle + swept) / middle / warm**1.5
+
+
+def test_a_film_follows_the_walls_of_a_round_bore() -> None:
+    """Both ends and the wall along the way, S = pi d^2 / 2 + 4 V / d, of bores that have the areas of the machine."""
+    model = chambers("heat_exchange", rate=4.0, film=1.0)
+    d = np.sqrt(4.0 * np.array([model["piston.area_a"], model["piston.area_b"]]) / np.pi)
+    around = [np.pi * d**2 / 2.0 + 4.0 * volumes(model, np.array([y]))[0] / d for y in (0.4, 0.0)]
+    assert fade(model, "chambers", 0.4) == pytest.approx(around[0] / around[1], rel=1e-12)
+
+
+@pytest.mark.parametrize("vanes", [1, 2])
+def test_a_film_follows_the_six_walls_between_vane_and_stop(vanes: int) -> None:
+    """Summed one by one: vane and stop, both sides, casing and hub, of a vane 60 mm wide between 15 and 45 mm."""
+    width, inner, outer = 0.06, 0.015, 0.045
+    face, swept = width * (outer - inner), 0.5 * width * (outer**2 - inner**2)
+    vane = load_model("vane")
+    assert (vane["piston.area_a"], vane["piston.area_b"]) == pytest.approx((swept, swept))
+    assert vane["rotary_vane.wall_volume"] == pytest.approx(face**2 / (width + outer - inner))
+    given = {"heat_exchange.rate": 4.0, "heat_exchange.film": 1.0}
+    given |= {f"piston.area_{side}": vanes * swept for side in "ab"}
+    given |= {
+        f"rotary_vane.{key}": vanes * vane[f"rotary_vane.{key}"] for key in ("volume_a", "volume_b", "wall_volume")
+    }
+    model = vane.with_effects([*vane.effects, "heat_exchange"], given)
+
+    def walls(y: float) -> np.ndarray:
+        angles = np.array([vane[f"rotary_vane.volume_{side}"] for side in "ab"]) / swept + np.array([y, -y])
+        return vanes * (2.0 * face + (outer**2 - inner**2) * angles + width * (inner + outer) * angles)
+
+    assert fade(model, "rotary_vane", 0.8) == pytest.approx(walls(0.8) / walls(0.0), rel=1e-12)
 
 
 @pytest.mark.parametrize(("rate", "share"), [(0.3, 0.0), (1.0, 0.0), (4.0, 0.0), (50.0, 0.0), (1.0, 0.3), (4.0, 1.0)])

@@ -140,9 +140,13 @@ def _is_unit(text: str) -> bool:
 
 
 def with_units(function: FunctionType) -> FunctionType:
-    """The same function, and all it calls in its own module, computing with quantities."""
+    """The same function, and all it calls in its own module or another effect's, computing with quantities."""
     scope: dict[str, Any] = {**function.__globals__, **_constants(function), **AWARE, "math": SimpleNamespace(**AWARE)}
     for name, value in function.__globals__.items():
-        if isinstance(value, FunctionType) and value.__module__ == function.__module__:
+        if not isinstance(value, FunctionType):
+            continue
+        if value.__module__ == function.__module__:
             scope[name] = FunctionType(value.__code__, scope, name, value.__defaults__)
+        elif value.__module__.startswith("pneumo_ros.plant.effects."):
+            scope[name] = with_units(value)
     return FunctionType(function.__code__, scope, function.__name__, function.__defaults__)

@@ -117,6 +117,12 @@ def test_the_verb_writes_a_file_that_other_verbs_take(
     assert "strokes was recorded as: bar,mm,gauge,swapped-chambers,zero=200mm,closed=5V." in said
     assert json.loads(Path("rig.json").read_text())["certain"] is True
     assert main(["compare", "strokes", "--rig", "rig.yaml", "--refit", "--quiet", "--json", "out.json"]) == 0
+    assert "# limits: -200mm..200mm" in Path("rig.yaml").read_text()  # the stroke is 0.4 m
+    with Path("rig.yaml").open("a") as file:
+        file.write("  limits: -30deg..30deg\n")
+    assert main(["compare", "strokes", "--rig", "rig.yaml"]) == 2
+    assert "limits are angles, -30deg..30deg, and my moves along a line" in capsys.readouterr().err
+    Path("rig.yaml").write_text(Path("rig.yaml").read_text().replace("-30deg..30deg", "-30mm..30mm"))
     compared = json.loads(Path("out.json").read_text())
     assert compared["runs"][0]["error"]["position_m"]["rms"] < 5e-4  # m; 0.2 m off without its zero
     again = pn.read("strokes", rig="rig.yaml")

@@ -163,15 +163,20 @@ def absent(given: Mapping[str, Any]) -> dict[str, float]:
 
 
 def of_a_rig(values: Mapping[str, Any], begun_with: Mapping[str, Any]) -> dict[str, Any]:
-    """Values that the rig file brings along and nobody has given: those of its machine file, and its limits."""
+    """Values that the rig file brings along and nobody has given: those of its machine file, and its limits.
+
+    Raises UsageError for a machine that turns or has other chambers, and for limits that are angles: laws plan in m.
+    """
     rig = rig_of(values)
     found: dict[str, Any] = {}
+    name = "this machine"
     if rig.machine and EFFECTS not in begun_with:
         machine = load_model(rig.machine)
-        found = {EFFECTS: list(machine.effects), **machine.parameters}
+        found, name = {EFFECTS: list(machine.effects), **machine.parameters}, machine.name
+        of_a_machine_file({**found, KEY: machine.coordinate})
         found |= absent(found)
     if rig.limits:
-        found |= {"limits.low": rig.limits[0], "limits.high": rig.limits[1]}
+        found["limits.low"], found["limits.high"] = rig.limits.along(LINE, name)
     if rig.joint:
         found["joint_name"] = rig.joint
     return {name: value for name, value in found.items() if name in values and name not in begun_with}

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from pneumo_ros.command.arguments import add_closed, add_model, add_output, add_rig, chosen_model
 from pneumo_ros.command.commissioning_text import outcome_text, parameters_text, wiring_text
 from pneumo_ros.command.console import Console, plain
-from pneumo_ros.command.live_rig import declared_wiring, live_settings
+from pneumo_ros.command.live_rig import declared_wiring, live_settings, rig_said
 from pneumo_ros.command.machine_out import add_machine_file, check_machine_file
 from pneumo_ros.command.reporting import add_report, prepare_report
 from pneumo_ros.command.rig_file import rig_text
@@ -81,7 +81,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     job = _job(options, console, model)
     wired = job.wiring()
     console.say(wiring_text(wired))
-    rig = _write_rig(options, wired, console)
+    rig = _write_rig(options, model, wired, console)
     if wired.faults and not options.as_wired:
         console.note(f"Mend that and call the same again with another --folder; or add --as-wired to go on with {rig}")
     stopped = bool(wired.faults and not options.as_wired) or not wired.certain
@@ -129,12 +129,13 @@ def _job(options: argparse.Namespace, console: Console, model: "Model") -> "Comm
     return Commissioning(model, perform, words, sensors, options.minutes, console.note)
 
 
-def _write_rig(options: argparse.Namespace, wired: "Wired", console: Console) -> str:
-    """The rig file beside the machine file; its path."""
+def _write_rig(options: argparse.Namespace, model: "Model", wired: "Wired", console: Console) -> str:
+    """The rig file beside the machine file; its path. What --rig says of live work is kept."""
     path = _beside(options.out, "_rig.yaml")
     machine = str(Path(options.out).resolve())  # to be written
     words, origin = wired.words, "As a commissioning found it."
-    text = rig_text(machine, options.namespace or "", options.joint or "", words, origin, options.closes)
+    place = options.namespace or "", options.joint or ""
+    text = rig_text(machine, *place, words, origin, model, options.closes, rig_said(options))
     write_whole(path, text)
     console.note(f"Wiring written to {path}, for --rig")
     return path

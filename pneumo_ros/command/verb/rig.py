@@ -57,7 +57,7 @@ def run(options: argparse.Namespace, console: Console) -> int:
     if options.out:
         origin = f"From {Path(options.bag).name}: check each line."
         words, joint = found.best.words, recording.joint_name
-        content = rig_text(options.model, options.namespace or "", joint, words, origin, _closed(words, model))
+        content = rig_text(options.model, options.namespace or "", joint, words, origin, model, _closed(words, model))
         write_whole(options.out, content)
         console.note(f"Written to {options.out}")
         console.next(f"compare {shlex.quote(options.bag)} --rig {shlex.quote(options.out)}")

@@ -2,13 +2,15 @@
 
 from pneumo_ros.plant.actuator import Actuator
 from pneumo_ros.plant.effect import Parameter, State
+from pneumo_ros.plant.effects.actuator.chambers import round_bore
 
 
 class SingleActing(Actuator):
     """Air on one side, Eqs. 2-3; on the other the atmosphere, and a spring that pushes back, linear over the stroke.
 
     F = A_a p_a - A_b p_atm - F_0 - (F_1 - F_0) (y / stroke + 1/2). Without spring the atmosphere and the load return
-    the piston. Without a valve the chamber is sealed: a gas spring, whose A_a is the area of its rod.
+    the piston. Without a valve the chamber is sealed: a gas spring, whose A_a is the area of its rod. The walls that
+    the gas touches are those of a round bore of the area A_a.
     """
 
     volume_a = Parameter(5.1e-4, "m3", "volume V_a0 of chamber a and its line at mid stroke", low=1e-8, high=10.0)
@@ -30,3 +32,7 @@ class SingleActing(Actuator):
         spring = spring_retracted + (spring_extended - spring_retracted) * (y / stroke + 0.5)
         drive = area_a * p_a - area_b * p_atm - spring
         return der_p_a, drive
+
+    def outputs(y, added_volume_a, area_a, volume_a):
+        touched_a = round_bore(volume_a + added_volume_a + area_a * y, area_a, volume_a)
+        return touched_a

@@ -1,6 +1,6 @@
 """Heat between gas and wall."""
 
-from pneumo_ros.plant.effect import Effect, Parameter, State, pi, sqrt
+from pneumo_ros.plant.effect import Effect, Parameter, State, sqrt
 
 SLOWEST = 0.1  # 1/s: below it the effect fades into the base model, whose gas leaves at the wall's temperature
 PRESSURE = 4e5  # Pa, of the gas at mid stroke whose rate is given
@@ -8,12 +8,13 @@ COLDEST, HOTTEST = 0.1, 10.0  # of the wall's temperature: no gas of a cylinder 
 
 
 def film_rate(
-    p: float, V: float, area: float, middle: float, theta: float, T: float, rate: float, film: float
+    p: float, V: float, middle: float, touched: float, theta: float, T: float, rate: float, film: float
 ) -> float:
-    """Rate [1/s] of a film whose coefficient grows with sqrt(p T_g) over the walls that the gas touches."""
+    """Rate [1/s] of a film whose coefficient grows with sqrt(p T_g) over the walls that the gas touches.
+
+    `touched` [1]: these walls over those at mid stroke, where the volume is `middle` [m3].
+    """
     warm = min(max(1.0 + theta / T, COLDEST), HOTTEST)
-    around = 4.0 / sqrt(4.0 * area / pi)
-    touched = (2.0 * area + around * V) / (2.0 * area + around * middle)
     return rate * (1.0 - film + film * touched * middle / V * warm * sqrt(warm * PRESSURE / p))
 
 
@@ -37,9 +38,9 @@ class HeatExchange(Effect):
     """Full balance of energy: the gas has its own temperature T_g = T + theta, which the wall brings back to T.
 
     With m = p V / (R T_g), Q = -m c_v theta / tau from the wall and gas that enters at T and leaves at T_g,
-    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). The heat may pass a film along the walls
-    that the gas touches, whose coefficient grows with sqrt(p T_g): then 1/tau is the rate at mid stroke and 4 bar. Its
-    walls are those of a round bore of the piston's area: leave the film at 0 in a machine that turns. A share s of the
+    theta' = T_g (gamma R T_in q - (gamma - 1) (p V' - Q) - R T_g q) / (p V). The heat may pass a film along the walls S
+    that the gas touches, whose coefficient grows with sqrt(p T_g): Q = -h S theta, so that 1/tau grows with
+    S sqrt(p T_g) / m and is the given rate at mid stroke and 4 bar. The actuator says how S grows. A share s of the
     energy of gas and piston may go into the wall at once: with s alone the gas is polytropic with the exponent
     n = gamma - s (gamma - 1).
     """
@@ -60,14 +61,15 @@ class HeatExchange(Effect):
 
     def equations(
         y, v, p_a, p_b, theta_a, theta_b, port_flow_a, port_flow_b, flow_a, flow_b, added_volume_a, added_volume_b,
-        area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio, rate, share, film,
+        touched_a, touched_b, area_a, area_b, volume_a, volume_b, gas_constant, temperature, heat_capacity_ratio,
+        rate, share, film,
     ):  # fmt: skip
         T, R, gamma = temperature, gas_constant, heat_capacity_ratio
         V_a = volume_a + added_volume_a + area_a * y
         V_b = volume_b + added_volume_b - area_b * y
         work_a, work_b = p_a * area_a * v, -p_b * area_b * v
-        rate_theta_a = film_rate(p_a, V_a, area_a, volume_a, theta_a, T, rate, film)
-        rate_theta_b = film_rate(p_b, V_b, area_b, volume_b, theta_b, T, rate, film)
+        rate_theta_a = film_rate(p_a, V_a, volume_a, touched_a, theta_a, T, rate, film)
+        rate_theta_b = film_rate(p_b, V_b, volume_b, touched_b, theta_b, T, rate, film)
         heat_a, der_theta_a = exchange(
             p_a, V_a, work_a, port_flow_a + flow_a, theta_a, T, R, gamma, rate_theta_a, share
         )

@@ -8,11 +8,12 @@ class LoadDependentFriction(Effect):
 
     F_c, F_s += k L + q L^2, and F_s += s L besides. The drive pushes one side of the teeth and the load the other; at
     rest and in steady motion both are nearly equal. For machines without chambers: the seals of a cylinder are pressed
-    by its pressures.
+    by its pressures. The usual q is k / F_s of the default machine, 0.1 over 100 N: friction that rises with the square
+    of the load then does as much at the usual force of a machine as friction that rises with the load.
     """
 
     coefficient = Parameter(0.1, "1", "rise k of friction over the force that is passed on", 0.0, 1.0, neutral=0.0)
-    growth = Parameter(0.0, "1/N", "its increase q with that force", low=0.0, high=20.0, neutral=0.0)
+    growth = Parameter(0.0, "1/N", "its increase q with that force", low=0.0, high=20.0, neutral=0.0, usual=1e-3)
     static = Parameter(0.0, "1", "further rise s of static friction alone", low=0.0, high=1.0, neutral=0.0)
 
     transmission = True
