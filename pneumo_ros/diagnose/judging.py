@@ -55,20 +55,16 @@ def judged(
     with ThreadPoolExecutor(2) as pool:
         reached = list(pool.map(lambda h, r: _best(scoring, fits, h, r, alone), hypotheses, residuals))
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
-    ends = [alone.train[2], alone.whole[2]]
-    ends += [
-        np.where(points_of(base, h), alone.train[2], end[2])
-        for h, one in zip(hypotheses, reached, strict=True)
-        for end in (one.best.train, one.best.whole)
-    ]
-    alone = scoring.best(base.everything, fits, [moved(alone.train, fits, end - alone.train[2]) for end in ends])
+    here = alone.fit[2]
+    ends = [np.where(points_of(base, h), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)]
+    alone = scoring.best(base.everything, fits, [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)])
+    before = alone.fit[1]
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h)  # a texture that its points explain is nothing that was known
-        strained = surprise(base, alone.train[2] * lines)
-        known = strained - surprise(base, beside.best.train[2] * lines) - 0.5 * float(h.u @ h.u)
-        prior = surprise(base, alone.train[2]) + beside.prior
-        before, after = alone.whole[1], beside.best.whole[1]  # as for the score: not what training hardly determines
+        strained = surprise(base, alone.fit[2] * lines)
+        known = strained - surprise(base, beside.best.fit[2] * lines) - 0.5 * float(h.u @ h.u)
+        prior, after = surprise(base, alone.fit[2]) + beside.prior, beside.best.fit[1]
         found.append(
             Candidate(
                 hypothesis=h,
@@ -98,13 +94,12 @@ def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: 
     for spread in SPREADS if points.any() else (1.0,):
         free, here = (loosened(fits[0], h, spread), loosened(fits[1], h, spread)), h.shift.copy()
         here[points] *= LAW_SPREAD / spread
-        own, starts = (h.residual, held, here), list[Array]()
-        for end in (alone.train[2], alone.whole[2]):
-            starts.append(np.where(points, here, end))
-            if points.any():  # and without the profile
-                starts.append(np.where(points, LAW_SPREAD / spread * end - free[0].offset, end))
+        own, end = (h.residual, held, here), alone.fit[2]
+        starts = [np.where(points, here, end)]
+        if points.any():  # and without the profile
+            starts.append(np.where(points, LAW_SPREAD / spread * end - free[0].offset, end))
         best = scoring.best(model, free, [own, *(moved(own, free, start - here) for start in starts)])
-        found.append(_Beside(best, log_prior(free[0], best.train[2], h), occam(fits[0], h, spread)))
+        found.append(_Beside(best, log_prior(free[0], best.fit[2], h), occam(fits[0], h, spread)))
     chosen = max(found, key=lambda one: one.nats)
     return replace(chosen, cost=chosen.cost + float(np.log(len(found))))
 

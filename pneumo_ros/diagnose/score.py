@@ -63,11 +63,10 @@ Fit = tuple[Array, Array, Array]  # residuals of training and held-out runs over
 
 @dataclass(frozen=True)
 class Best:
-    """Log evidence (2,) of training and held-out runs; the fits that are best for the training runs, and for all."""
+    """Log evidence (2,) of training and held-out runs, and the fit that is best for all of them."""
 
     evidence: Array
-    train: Fit
-    whole: Fit
+    fit: Fit
 
 
 def moved(fit: Fit, fits: tuple[BaseFit, BaseFit], step: Array) -> Fit:
@@ -102,48 +101,37 @@ class Scoring:
         return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
 
     def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit]) -> Best:
-        """The log evidence of a fit, its base parameters moved to where that of the training runs is largest.
+        """The log evidence of a fit, its base parameters moved to where that of all runs is largest.
 
         `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little
-        of what parameters explain, which the correlation of the discrepancy makes worth many nats. The evidence of the
-        held-out runs is ln p(all) - ln p(training), base parameters at their best for each: what training hardly
-        determines, such as friction at a place that it passed once, must not decide there.
+        of what parameters explain, which the correlation of the discrepancy makes worth many nats. What training hardly
+        determines, such as friction at a place that it passed once, must not decide on held-out runs; and what is
+        missing may differ between recordings, so that training alone would ask for another discrepancy.
 
         `starts`: one fit or several that differ in base parameters. A slow and a fast discrepancy have largest evidence
         at different base parameters, tens of nats apart, and a climb ends at that which is nearer.
         """
-        alone, found, fitted = self._climb(model, fits, starts, parts=1)
-        together, _, whole = self._climb(model, fits, [fitted, *starts], parts=2)
-        return Best(np.array([found[0], together - alone]), fitted, whole)
 
-    def _climb(
-        self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit], parts: int
-    ) -> tuple[float, Array, Fit]:
-        """The fit whose base parameters are best for training runs, or for both `parts`; from the best of `starts`.
-
-        Returns ln p with the priors of the base parameters, the log evidence (parts,) without them, and the fit.
-        """
-
-        def valued(one: Fit) -> tuple[float, Array, Fit]:
-            found = self.evidence(model, *one[:parts])
-            return float(found.sum()) - strain(one[2] + fits[0].offset), found, one
+        def valued(one: Fit) -> tuple[float, Best]:
+            found = self.evidence(model, *one[:2])
+            return float(found.sum()) - strain(one[2] + fits[0].offset), Best(found, one)
 
         best = max(map(valued, starts), key=lambda one: one[0])
         for _ in range(STEPS):
-            step = self._step(model, fits, best[2], parts)
-            tried = max((valued(moved(best[2], fits, share * step)) for share in SHARES), key=lambda one: one[0])
+            step = self._step(model, fits, best[1].fit)
+            tried = max((valued(moved(best[1].fit, fits, share * step)) for share in SHARES), key=lambda one: one[0])
             if not tried[0] > best[0]:
                 break
             gained, best = tried[0] - best[0], tried
             if gained < LITTLE:
                 break
-        return best
+        return best[1]
 
-    def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit, parts: int) -> Array:
-        """The step (free,) of base parameters by generalised least squares on the first `parts` of the runs."""
+    def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> Array:
+        """The step (free,) of base parameters by generalised least squares."""
         normal, slope = np.eye(len(fits[0].names)), fitted[2] + fits[0].offset
-        for family in self._families(model, fitted[:parts]):
-            for part, fit in enumerate(fits[:parts]):
+        for family in self._families(model, fitted[:2]):
+            for part, fit in enumerate(fits):
                 A, b = family.normal(part, fit.slopes)
                 normal, slope = normal + A, slope + b
         return np.asarray(-np.linalg.solve(normal, slope))

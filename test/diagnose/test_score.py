@@ -214,7 +214,7 @@ def test_base_parameters_are_fitted_with_the_correlation_of_what_no_model_has(se
     scoring, fits = Scoring(part, part), (base, base)
     begin = moved((residual, residual, np.zeros(1)), fits, plain)
     best = scoring.best(MODEL, fits, [begin])
-    found, (train, held, shift) = best.evidence, best.train
+    found, (train, held, shift) = best.evidence, best.fit
     assert abs(shift[0] + 0.5) < 0.5 * abs(plain[0] + 0.5)
     assert float(found[0]) > float(scoring.evidence(MODEL, *begin[:2])[0]) + 50.0
     assert train == pytest.approx(residual + slopes @ shift)
@@ -252,6 +252,18 @@ def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> N
     )
     assert plain < -20.0
     assert abs(beside[1] - alone[1]) < 5.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_held_out_runs_with_more_that_no_model_has_still_support_an_effect(seed: int) -> None:
+    """As pulses of force that nobody recorded: training alone is explained to its noise, and held-out runs are not."""
+    part, shape, slopes = evidence(), 3.0 * np.sin(20.0 * HOP * np.arange(N)), np.zeros((N, 1))
+    base = BaseFit(MODEL, MODEL, ("a",), np.ones(1), np.zeros(1), part, noise(0), slopes)
+    beside = noise(seed), noise(seed + 1) + slow(seed, 10.0), np.zeros(1)
+    without = beside[0] + shape, beside[1] + shape, np.zeros(1)
+    scoring = Scoring(part, part)
+    found = [scoring.best(MODEL, (base, base), [one]).evidence for one in (without, beside)]
+    assert min(found[1] - found[0]) > 0.0
 
 
 def test_a_profile_is_no_worse_for_places_that_training_did_not_pass() -> None:
