@@ -74,7 +74,7 @@ def uneven(fit: BaseFit, columns: Mapping[str, Array]) -> BaseFit:
 
 def points_of(fit: BaseFit, h: Hypothesis) -> NDArray[np.bool_]:
     """Which free parameters (free,) are points of a profile that the model lacks and that `h` adds."""
-    return np.array([name.partition(" ")[0] == h.name for name in fit.names])
+    return np.array([name.partition(" ")[0] == h.name for name in fit.names], dtype=bool)
 
 
 def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:

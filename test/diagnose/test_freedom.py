@@ -137,6 +137,13 @@ def test_points_of_a_profile_that_is_a_candidate_are_known_as_effects_are(spread
     assert log_prior(fit, here, other) - log_prior(free, back, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
 
 
+def test_a_model_without_free_parameters_has_no_points() -> None:
+    """As sealed chambers whose motion is imposed: an array without an element still says which of them."""
+    fit = BaseFit(START, START, (), np.ones(0), np.zeros(0), EVIDENCE, np.zeros(N), np.zeros((N, 0)))
+    h = Hypothesis("heat_exchange", (), np.empty(0), np.zeros(0), fit.residual)
+    assert np.zeros(0)[points_of(fit, h)].shape == (0,)
+
+
 def test_only_profiles_are_free_where_the_model_lacks_them() -> None:
     """A tenth of the usual size of each knot, and nothing of an effect of one size."""
     lacking = {name: coordinates(START.library.find(name)) for name in (PROFILE, "viscous_friction")}
