@@ -17,7 +17,8 @@ from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
-SPREADS = (0.2, 0.45, 1.0)  # usual sizes: of the points of a profile, unknown between a texture and a usual size
+# Usual sizes: of the points of a profile, in equal steps of its logarithm from twice the texture of any machine to one.
+SPREADS = (0.2, 0.45, 1.0)
 NONE_WITHIN = 2.0  # deviations from zero: a smaller size may be zero
 
 
@@ -58,13 +59,13 @@ def judged(
     here = alone.fit[2]
     ends = [np.where(points_of(base, h), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)]
     alone = scoring.best(base.everything, fits, [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)])
-    before = alone.fit[1]
+    before, unaided = alone.fit[1], surprise(base, alone.fit[2])
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h)  # a texture that its points explain is nothing that was known
         strained = surprise(base, alone.fit[2] * lines)
         known = strained - surprise(base, beside.best.fit[2] * lines) - 0.5 * float(h.u @ h.u)
-        prior, after = surprise(base, alone.fit[2]) + beside.prior, beside.best.fit[1]
+        prior, after = unaided + beside.prior, beside.best.fit[1]
         found.append(
             Candidate(
                 hypothesis=h,

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import strain
 from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.freedom import points_of
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales, weights
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.jit import entry
@@ -343,7 +344,7 @@ def log_prior(free: BaseFit, shift: Array, h: Hypothesis) -> float:
 
     Where they hold the candidate's own points, as those of a profile, its coordinates count among them.
     """
-    own = 0.0 if any(name.partition(" ")[0] == h.name for name in free.names) else 0.5 * float(h.u @ h.u)
+    own = 0.0 if points_of(free, h).any() else 0.5 * float(h.u @ h.u)
     return -surprise(free, shift) - own
 
 

@@ -33,7 +33,7 @@ STRAINED = (
 OPEN = 3.0  # V: the valve of the usual machine is open
 IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
 REWEIGHTED = 5  # least-squares solutions, each weighted by the residual of the previous one
-FREE = 1e-3  # information about a size in steps: none to speak of
+FREE = 1e-3  # least prior information about a size in steps: it is free within some thirty steps, as sizes are
 SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 
 

@@ -38,7 +38,7 @@ def test_no_size_leaves_its_range() -> None:
 
 
 def test_a_point_of_a_profile_that_is_hardly_passed_stays_near_zero() -> None:
-    """Least squares alone would take it for several usual sizes, by what noise does in a few windows."""
+    """Without its prior, noise in a few windows makes such a point several usual sizes large."""
     profile = next(h for h in screened()[1] if h.name == "position_dependent_friction")
     assert len(profile.u) > 3
     assert float(np.max(np.abs(profile.u))) < 1.0
