@@ -26,9 +26,9 @@ from pneumo_ros.shooting.problem import FINE, small_step
 Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
-FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
+FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones, and one of its inverse
 LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: after a smaller gain there is no other round
-SHARES = (1.0, 0.3, 0.1)  # of a step, tried at once
+SHARES = (0.3, 0.1)  # of a step, tried where all of it keeps less than it promised
 REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the residual of the previous solution
 
 
@@ -85,17 +85,22 @@ def fit_base(
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
     model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
-    cost most. Rounds end when renewed slopes give no further gain, at the latest after `iterations` sets of slopes and
-    `ROUNDS_EACH` rounds for each of them. A round pays that gains more than `share` of the loss, and half a nat.
+    cost most. Rounds end when slopes promise no further gain that are new, or that kept what they promised; at the
+    latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of them. A round pays that gains more
+    than `share` of the loss, and half a nat.
     """
     descent = _Descent(evidence, known, model, share)
     for taken in range(1, iterations + 1):
         descent.renew()
-        for number in range(ROUNDS_EACH):
+        kept = True
+        for _ in range(ROUNDS_EACH):
             gain, promised = descent.step()
-            if number == 0 and descent.little(gain):
-                return Fitted(descent.model, taken, True)
-            if descent.little(gain) or gain < FAITHFUL * promised:
+            if descent.little(gain):
+                if kept:
+                    return Fitted(descent.model, taken, True)
+                break
+            kept = kept and FAITHFUL * promised <= gain <= promised / FAITHFUL
+            if gain < FAITHFUL * promised:
                 break
     return Fitted(descent.model, iterations, False)
 
@@ -118,23 +123,36 @@ class _Descent:
         return gain < LITTLE + self.share * _loss(self.evidence, self.residual)
 
     def step(self) -> tuple[float, float]:
-        """Take the best of some shares of the next step, if it gains; the gain, and the gain the slopes predicted."""
+        """Take the best of some shares of the next step, if it gains; the gain, and the gain the slopes predicted.
+
+        None is tried where they predict little.
+        """
         names, prior = self.known.names, self.known.prior
         theta = np.array([self.model[n] for n in names])
         offset = (theta - self.known.centre) / prior
         x, after = self._wanted(theta, offset)
         before = _objective(self.evidence, self.residual, offset)
         promised = _objective(self.evidence, after, offset + x) - before
-        tried = [np.clip(theta + share * x * prior, self.low, self.high) for share in SHARES]
-        tried = [physical(self.model, names, values) for values in tried]
-        variants = [dict(zip(names, values.tolist(), strict=True)) for values in tried]
-        residual = residuals(self.evidence, self.model, variants)
-        offsets = [(values - self.known.centre) / prior for values in tried]
-        found = [_objective(self.evidence, r, o) for r, o in zip(residual, offsets, strict=True)]
-        best = int(np.argmax(found))
-        gain = found[best] - before
+        if self.little(promised):
+            return 0.0, promised
+
+        def taken(shares: Sequence[float]) -> list[tuple[float, dict[str, float], Array]]:
+            """Objective, values and residual of shares of the step."""
+            values = [np.clip(theta + share * x * prior, self.low, self.high) for share in shares]
+            values = [physical(self.model, names, own) for own in values]
+            variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
+            found = residuals(self.evidence, self.model, variants)
+            offsets = [(own - self.known.centre) / prior for own in values]
+            objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
+            return list(zip(objectives, variants, found, strict=True))
+
+        tried = taken((1.0,))
+        if not tried[0][0] - before >= FAITHFUL * promised:
+            tried += taken(SHARES)
+        objective, variant, residual = max(tried, key=lambda one: one[0])
+        gain = objective - before
         if gain > 0.0:
-            self.model, self.residual = self.model.with_parameters(variants[best]), residual[best]
+            self.model, self.residual = self.model.with_parameters(variant), residual
         return gain, promised
 
     def _wanted(self, theta: Array, offset: Array) -> tuple[Array, Array]:

@@ -199,16 +199,21 @@ class RunEvidence:
         """Residuals (variants, usable windows) in their units, family after family; by default of its own `frame`."""
         frame = frame or self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
-        measured = [self._measured(model, f, frame.states) for f in self.families]
+        own = measured = [self._measured(model, f, frame.states) for f in self.families]
+        along: int | None = None
+        late = self._late(model, parameters)
         for variant in follow_each(model, frame, parameters, ranking):
-            own = measured
-            if not variant.as_measured:
+            if variant.along != along:
+                along = variant.along
                 own = [
                     _weighed(self._measured(model, f, variant.states), m)
                     for f, m in zip(self.families, measured, strict=True)
                 ]
             q = parameters[variant.index]
-            parts = [self._value(model, q, variant, m)[f.usable] for f, m in zip(self.families, own, strict=True)]
+            parts = [
+                self._value(model, q, variant, m, late[variant.index])[f.usable]
+                for f, m in zip(self.families, own, strict=True)
+            ]
             result[variant.index] = np.concatenate(parts)
         return result
 
@@ -221,9 +226,16 @@ class RunEvidence:
         chamber = next(one for one in model.chambers if one.equation == family.equation)
         return Balance(model, chamber).measured(family.window, states)
 
-    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured) -> Array:
+    def _late(self, model: Model, parameters: Array) -> Index:
+        """By how many samples (variants,) the sensor gives the position late, and so shows each slip."""
+        if not self.breakaways:
+            return np.zeros(len(parameters), dtype=np.int64)
+        late = delays_of(model, parameters)[:, model.composition.sensed.index("y")]
+        return np.rint(late / self.run.sample_time).astype(np.int64)
+
+    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: int) -> Array:
         if measured is None:
-            return self._slips(model, q, variant.states)
+            return self._slips(model, q, variant.states, late)
         if isinstance(measured, MeasuredChamber):
             return measured.value(variant.claimed[:, measured.column - 1])
         rows = measured.bump.centres(len(variant.states))
@@ -237,14 +249,13 @@ class RunEvidence:
         model.kernel.observe(np.ascontiguousarray(states), q, held, self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
-    def _slips(self, model: Model, q: Array, states: Array) -> Array:
+    def _slips(self, model: Model, q: Array, states: Array, late: int) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed at that moment.
 
-        More by `lowered`, what the slip lies below it for other reasons. A position that is late shows the slip late.
+        More by `lowered`, what the slip lies below it for other reasons. The recording shows it `late` samples late.
         """
         if not self.breakaways:
             return np.empty(0)
-        late = int(np.rint(delays_of(model, q[None])[0, model.composition.sensed.index("y")] / self.run.sample_time))
         rows = np.concatenate(self.spans)
         seen = self._see(model, q, states[rows], rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])

@@ -89,36 +89,42 @@ class Followed:
     """A run by one parameter vector: its index, states (n, states), claimed derivatives of v and each pressure.
 
     The latter (n, 1 + chambers) are means over the interval before each sample.
-    `as_measured`: whether the frame's states are the measured ones.
+    `along`: index of a vector whose sensors read the same, so that the frame's states are alike; None: as measured.
     """
 
     index: int
     states: Array
     claimed: Array
-    as_measured: bool
+    along: int | None
 
 
 def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
-    """States and claimed derivatives of a run by each parameter vector, in any order.
+    """States and claimed derivatives of a run by each parameter vector; those along the same states one after another.
 
     Where a vector has sensor effects, the measured states are first corrected for them:
     x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs.
     """
     parts = _parts(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
     corrects = sensing(model, parameters)
-    for drive, own in ((_as_measured, np.flatnonzero(~corrects)), (_corrected, np.flatnonzero(corrects))):
-        for rows in (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE)):
-            states, mean = drive(model, frame, parameters[rows], parts)
-            for k, x, m in zip(rows, states, mean, strict=True):
-                yield Followed(int(k), x, m, drive is _as_measured)
+    for rows in _some(np.flatnonzero(~corrects)):
+        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts)
+        for k, x, m in zip(rows, states, mean, strict=True):
+            yield Followed(int(k), x, m, None)
+    for rows in _some(np.flatnonzero(corrects)):
+        states, mean, first = _corrected(model, frame, parameters[rows], parts)
+        for j in np.argsort(first, kind="stable"):
+            yield Followed(int(rows[j]), states[j], mean[j], int(rows[first[j]]))
 
 
-def _as_measured(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
-    return _drive_lanes(model, frame.run, frame.states, parameters, parts)
+def _some(own: Index) -> Iterator[Index]:
+    return (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE))
 
 
-def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array]:
-    """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors."""
+def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array, Index]:
+    """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors.
+
+    Their states, claimed derivatives, and the first lane (lanes,) of the group of each.
+    """
     first, group = alike_sensors(model, parameters)
     own = parameters[first]
     given, own_states, own_mean = driven_lanes(
@@ -126,11 +132,11 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
         lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts), _SETTLED,
     )  # fmt: skip
     states, mean = own_states[group], own_mean[group]
-    for k, lane in enumerate(first):
-        others = np.setdiff1d(np.flatnonzero(group == k), lane)
-        if len(others):
-            states[others], mean[others] = _drive_lanes(model, frame.run, given[k], parameters[others], parts)
-    return states, mean
+    others = np.setdiff1d(np.arange(len(group)), first)
+    if len(others):
+        along = given[0] if len(first) == 1 else given[group[others]]
+        states[others], mean[others] = _drive_lanes(model, frame.run, along, parameters[others], parts)
+    return states, mean, first[group]
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:

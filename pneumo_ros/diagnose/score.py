@@ -32,7 +32,7 @@ TAIL = 3.0  # deviations: beyond, an innovation counts by its logarithm
 SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over the median noise
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
 NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise
-STEPS, SHARES, LITTLE = 3, (1.0, 0.3), 0.5  # of base parameters: most steps, shares tried, least gain for another
+STEPS, SHARE, LITTLE = 3, 0.3, 0.5  # of base parameters: most steps, share tried of a poor one, least gain to go on
 EXACT = 4  # parabolas, each closer to the largest value
 FINE, REACH = 0.01, 4.0  # of the scale of the noise: a step of parabolas; and how many of them at a time
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
@@ -93,7 +93,7 @@ class Scoring:
 
         Noise and discrepancy are those of the greatest likelihood in the runs whose residuals are given.
         """
-        return np.asarray(np.sum([family.evidence() for family in self._families(model, residuals)], axis=0))
+        return _evidence(self._families(model, residuals))
 
     def _families(self, model: Model, residuals: Sequence[Array]) -> list["_Family"]:
         """The families of the training runs' residuals, or of those and the held-out runs'."""
@@ -113,14 +113,17 @@ class Scoring:
         at different base parameters, tens of nats apart, and a climb ends at that which is nearer.
         """
 
-        def valued(one: Fit) -> tuple[float, Best]:
-            found = self.evidence(model, *one[:2])
-            return float(found.sum()) - strain(one[2] + fits[0].offset), Best(found, one)
+        def valued(one: Fit) -> tuple[float, Best, list[_Family]]:
+            families = self._families(model, one[:2])
+            found = _evidence(families)
+            return float(found.sum()) - strain(one[2] + fits[0].offset), Best(found, one), families
 
         best = max(map(valued, starts), key=lambda one: one[0])
         for _ in range(STEPS):
-            step = self._step(model, fits, best[1].fit)
-            tried = max((valued(moved(best[1].fit, fits, share * step)) for share in SHARES), key=lambda one: one[0])
+            step = self._step(fits, best[1].fit, best[2])
+            tried = valued(moved(best[1].fit, fits, step))
+            if not tried[0] > best[0] + LITTLE:
+                tried = max(tried, valued(moved(best[1].fit, fits, SHARE * step)), key=lambda one: one[0])
             if not tried[0] > best[0]:
                 break
             gained, best = tried[0] - best[0], tried
@@ -128,10 +131,10 @@ class Scoring:
                 break
         return best[1]
 
-    def _step(self, model: Model, fits: tuple[BaseFit, BaseFit], fitted: Fit) -> Array:
-        """The step (free,) of base parameters by generalised least squares."""
+    def _step(self, fits: tuple[BaseFit, BaseFit], fitted: Fit, families: Sequence["_Family"]) -> Array:
+        """The step (free,) of base parameters by generalised least squares; `families`: those of the fit."""
         normal, slope = np.eye(len(fits[0].names)), fitted[2] + fits[0].offset
-        for family in self._families(model, fitted[:2]):
+        for family in families:
             for part, fit in enumerate(fits):
                 A, b = family.normal(part, fit.slopes)
                 normal, slope = normal + A, slope + b
@@ -233,6 +236,11 @@ class _Family:
                     values[:, k] += self.weight * np.array(both)
             self._known[at] = values[0], values[1]
         return self._known[at]
+
+
+def _evidence(families: Sequence[_Family]) -> Array:
+    """Log evidence (parts,) of all families."""
+    return np.asarray(np.sum([family.evidence() for family in families], axis=0))
 
 
 def _peak(options: Sequence[float], value: Callable[[float], float]) -> float:

@@ -1,6 +1,7 @@
 """Every candidate fitted linearly to part of the evidence, and the choice of candidates for the nonlinear fit."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,11 +79,13 @@ def screen(base: BaseFit) -> list[Hypothesis]:
         spans.append((len(variants), len(own), sizes))
         variants += own
     residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
-    result: list[Hypothesis] = []
-    for (name, effect, u), (first, count, sizes) in zip(tasks, spans, strict=True):
-        change = (residual[first : first + count] - residual[0]).T
-        result.append(_linear(base, name, effect, u, sizes, change))
-    return sorted(result, key=lambda h: -h.likelihood)
+
+    def fitted(k: int) -> Hypothesis:
+        (name, effect, u), (first, count, sizes) = tasks[k], spans[k]
+        return _linear(base, name, effect, u, sizes, (residual[first : first + count] - residual[0]).T)
+
+    with ThreadPoolExecutor(2) as pool:
+        return sorted(pool.map(fitted, range(len(tasks))), key=lambda h: -h.likelihood)
 
 
 def _one_size(effect: tuple[Coordinate, ...]) -> bool:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+ALONE = 2  # lanes: a block of lanes takes as long however few of them are filled, as long as three runs do
+
 
 def _blocks(rows: NDArray[Any], width: int) -> NDArray[Any]:
     """(lanes, n) -> (blocks, n, width), the last block filled up with copies of the last lane."""
@@ -96,19 +98,27 @@ def follow_lanes(
 
     measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); kept, wanted: indices
     of states; `start` [s]: time of the first sample. Both results are (lanes, samples, indices); row 0 of the
-    derivatives repeats row 1.
+    derivatives repeats row 1. One or two lanes beyond the last whole block are run by `kernel.follow`, to the same bit.
     """
     count, samples, width = len(parameters), measured.shape[1], kernel.LANES
     X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
+    alone = count % width if count % width <= ALONE else 0
+    together, frame = count - alone, measured.shape[2]
 
     def part(blocks: slice) -> None:
-        which = slice(blocks.start * width, blocks.stop * width)
+        which = slice(blocks.start * width, min(blocks.stop * width, together))
         given = measured if len(measured) == 1 else measured[which]
         kernel.follow_lanes(
             given, parameters[which], rest[which], inputs, start, h, stride, parts, kept, X[which], wanted, out[which]
         )
 
-    if count:
-        _share(part, -(-count // width), threads)
+    if together:
+        _share(part, -(-together // width), threads)
+    for lane in range(together, count):
+        states = np.empty((samples, frame + rest.shape[1]))
+        states[:, :frame], states[0, frame:] = measured[min(lane, len(measured) - 1)], rest[lane]
+        rates = np.empty_like(states)
+        kernel.follow(states, parameters[lane], inputs, start, h, stride, parts, rates)
+        X[lane], out[lane] = states[:, kept], rates[:, wanted]
     out[:, 0] = out[:, 1] if samples > 1 else 0.0
     return X, out
