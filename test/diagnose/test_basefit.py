@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear
 
 from pneumo_ros.diagnose.basefit import ROUNDS_EACH, Known, fit_base, slopes
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.hypothesis import OVERLAP
+from pneumo_ros.diagnose.hypothesis import OVERLAP, log_likelihood
 from pneumo_ros.plant import Model, load_model
 
 NAMES = tuple(
@@ -75,18 +75,18 @@ class Alternating:
         self.calls = 0
         self.two = (np.where(np.arange(1000) < 10, 30.0, 0.0), np.full(1000, 2.52))
         self.which = {70.0: 0}  # of the two, by value of the parameter
+        self.here, self.begin = 0, 70.0  # where slopes were asked for last
 
     def residuals(self, model: Model, values: np.ndarray) -> np.ndarray:
-        """Residuals (variants, 1000): of a value and a probe of its slope, or of three shares of a step."""
+        """Residuals (variants, 1000): of a known value and a probe of its slope, or of one or two shares of a step."""
         self.calls += 1
         assert self.calls < 500, "the fit goes round for ever"
         at = values[:, COLUMN].tolist()
-        if len(at) == 3:
-            begin = (at[1] - 0.3 * at[0]) / 0.7
-            here = self.which[min(self.which, key=lambda value: abs(value - begin))]
-            self.which |= dict.fromkeys(at, 1 - here)
-        which = [self.which[value if len(at) == 3 else at[0]] for value in at]
-        return np.stack([self.two[k] + 1e-4 * value for k, value in zip(which, at, strict=True)])
+        if at[0] in self.which:
+            self.here, self.begin = self.which[at[0]], at[0]
+            return np.stack([self.two[self.here] * (1.0 - 0.05 * (value - self.begin)) for value in at])
+        self.which |= dict.fromkeys(at, 1 - self.here)
+        return np.stack([self.two[1 - self.here]] * len(at))
 
 
 def test_a_fit_ends_where_two_models_are_each_better_by_their_own_scales() -> None:
@@ -95,17 +95,22 @@ def test_a_fit_ends_where_two_models_are_each_better_by_their_own_scales() -> No
     evidence: Any = Alternating()
     fitted = fit_base(cast(Evidence, evidence), axis, known)
     assert fitted.settled
-    assert evidence.calls < 10
+    assert 3 <= evidence.calls < 10
+    likelihoods = [log_likelihood(evidence, residual) for residual in evidence.two]
+    assert evidence.which[fitted.model[COULOMB]] == np.argmax(likelihoods)
 
 
 class Falling(Alternating):
-    """Evidence whose residual gets smaller with every call: the fit never settles."""
+    """Evidence whose residual gets smaller with every call, and promises more by its slopes: the fit never settles."""
 
     def residuals(self, model: Model, values: np.ndarray) -> np.ndarray:
         """Residuals (variants, 1000)."""
         self.calls += 1
         assert self.calls < 500, "the fit goes round for ever"
-        return np.full((len(values), 1000), 1e6 * 0.8**self.calls)
+        at = values[:, COLUMN]
+        if len(at) == 2:  # slopes are asked for
+            self.begin = at[0]
+        return 1e6 * 0.8**self.calls * (1.0 - 0.05 * (at - self.begin))[:, None] * np.ones(1000)
 
 
 def test_a_fit_that_does_not_settle_ends_and_says_so() -> None:
@@ -115,4 +120,18 @@ def test_a_fit_that_does_not_settle_ends_and_says_so() -> None:
     fitted = fit_base(cast(Evidence, evidence), axis, known, iterations=3)
     assert not fitted.settled
     assert fitted.taken == 3
-    assert evidence.calls == 3 * (ROUNDS_EACH + 1)
+    assert evidence.calls <= 3 * (2 * ROUNDS_EACH + 1)
+
+
+def test_slopes_that_keep_their_promise_are_made_once() -> None:
+    axis = load_model("axis")
+    known, made = Known((COULOMB,), np.array([70.0]), np.array([2.0]), np.array([0.1])), list[int]()
+
+    def residuals(model: Model, values: np.ndarray) -> np.ndarray:
+        made.append(len(values))
+        return (values[:, COLUMN, None] - 71.0) * np.linspace(1.0, 9.0, 400)
+
+    evidence: Any = SimpleNamespace(names=("momentum 100 ms",), family=np.zeros(400, dtype=int), residuals=residuals)
+    fitted = fit_base(cast(Evidence, evidence), axis, known)
+    assert abs(fitted.model[COULOMB] - 71.0) < 0.01
+    assert made == [2, 1], "slopes, and the whole step"
