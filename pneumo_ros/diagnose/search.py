@@ -52,8 +52,6 @@ SHOWN_ANYWAY = 4  # candidates tried where none is promising, so that the object
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
 ENOUGH = 40  # segments: what is found along the signals needs few more
 VANISHED = "its size vanishes beside the effects added later"
-CHANCE = 100.0  # nats: a load that is thrown between two faces moves as chance wills, and resembles whatever is left
-IMITATES = f"gains less than {CHANCE:g} nats, as chance may, and predictions of held-out runs do not gain by it"
 UNHELPFUL = "predictions of held-out runs over 1 s do not improve with it"
 
 
@@ -232,7 +230,6 @@ class Search:
         ranking = self.ranking(model)
         base, held = ranking.base, ranking.held
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
-        candidates = [self.chance(model, one) for one in candidates]
         if all(candidate.objections for candidate in candidates):
             candidates = self.asked(model, candidates)
         best = simplest(base, held, candidates)
@@ -256,14 +253,6 @@ class Search:
                 self.paying.add(one.name)
             return [*candidates[:k], tried, *candidates[k + 1 :]]
         return candidates
-
-    def chance(self, model: Model, one: Candidate) -> Candidate:
-        """The candidate; refused if it is a load behind a play that gains little, and nothing in predictions."""
-        loose = any(c.role == "play" for c in one.hypothesis.coordinates)
-        if not loose or one.objections or one.score.nats >= CHANCE:
-            return one
-        new = self.fitter.refit(self.fitter.extended(model, one.hypothesis))
-        return one if pays(self.predicted(model), self.predicted(new)) else replace(one, refused=IMITATES)
 
     def unseen(self, model: Model, ranking: Ranking) -> dict[str, float]:
         """Effects that the recordings cannot show, without those that contain one of the model: it stands for them."""
