@@ -26,7 +26,7 @@ from pneumo_ros.shooting.problem import FINE, small_step
 Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
-FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones, and one of its inverse
+FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less, or gains 1 / 0.8 of it, asks for new ones
 LITTLE, SMALL_SHARE = 0.5, 1e-4  # log likelihood, and share of the loss: after a smaller gain there is no other round
 SHARES = (0.3, 0.1)  # of a step, tried where all of it keeps less than it promised
 REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the residual of the previous solution
@@ -93,10 +93,10 @@ def fit_base(
     for taken in range(1, iterations + 1):
         descent.renew()
         kept = True
-        for _ in range(ROUNDS_EACH):
+        for number in range(ROUNDS_EACH):
             gain, promised = descent.step()
             if descent.little(gain):
-                if kept:
+                if number == 0 or (kept and descent.little(promised)):
                     return Fitted(descent.model, taken, True)
                 break
             kept = kept and FAITHFUL * promised <= gain <= promised / FAITHFUL
