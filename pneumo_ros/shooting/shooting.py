@@ -25,7 +25,6 @@ _ITERATIONS, _ENOUGH = 20, 0.3  # of one descent: most steps, and least gain in 
 _ROUGHLY = 1e-3  # share of the cost: least gain of a step before starts have been reseated for the first time
 _ROUNDS, _WORTH = 6, 2.0  # most rounds, and least gain of a round before another
 _LEAST, _MOST, _HARDER = 1e-9, 1e3, 30.0  # bounds of the damping, and its growth after a step without gain
-_NOTICED = 0.03  # damping that changes a step by some per cent: after a step without gain, less would repeat it
 _SETTLING = 6  # steps of a single start that is worse after the linear prediction
 _WORSE = 1.0  # rise of a segment's loss above which its start is fitted by itself
 
@@ -98,7 +97,7 @@ class Shooting(Problem):
                 break
             *tried, cost = self._step(states, theta, residuals, equations, damping)
             while not cost < costs[-1] and damping <= _MOST:
-                damping = max(damping * _HARDER, _NOTICED)
+                damping *= _HARDER
                 *tried, cost = self._step(states, theta, residuals, equations, damping)
             if not cost < costs[-1]:
                 break
