@@ -99,9 +99,9 @@ def fit_base(
                 if number == 0 or (kept and descent.little(promised)):
                     return Fitted(descent.model, taken, True)
                 break
-            kept = kept and FAITHFUL * promised <= gain <= promised / FAITHFUL
             if gain < FAITHFUL * promised:
                 break
+            kept = kept and gain <= promised / FAITHFUL
     return Fitted(descent.model, iterations, False)
 
 
@@ -123,37 +123,36 @@ class _Descent:
         return gain < LITTLE + self.share * _loss(self.evidence, self.residual)
 
     def step(self) -> tuple[float, float]:
-        """Take the best of some shares of the next step, if it gains; the gain, and the gain the slopes predicted.
+        """Take the next step or a share of it, if that gains; the gain, and the gain that the slopes predicted.
 
-        None is tried where they predict little.
+        Nothing is tried where they predict little.
         """
-        names, prior = self.known.names, self.known.prior
-        theta = np.array([self.model[n] for n in names])
-        offset = (theta - self.known.centre) / prior
+        theta = np.array([self.model[n] for n in self.known.names])
+        offset = (theta - self.known.centre) / self.known.prior
         x, after = self._wanted(theta, offset)
         before = _objective(self.evidence, self.residual, offset)
         promised = _objective(self.evidence, after, offset + x) - before
         if self.little(promised):
             return 0.0, promised
-
-        def taken(shares: Sequence[float]) -> list[tuple[float, dict[str, float], Array]]:
-            """Objective, values and residual of shares of the step."""
-            values = [np.clip(theta + share * x * prior, self.low, self.high) for share in shares]
-            values = [physical(self.model, names, own) for own in values]
-            variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
-            found = residuals(self.evidence, self.model, variants)
-            offsets = [(own - self.known.centre) / prior for own in values]
-            objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
-            return list(zip(objectives, variants, found, strict=True))
-
-        tried = taken((1.0,))
+        tried = self._tried(theta, x, (1.0,))
         if not tried[0][0] - before >= FAITHFUL * promised:
-            tried += taken(SHARES)
+            tried += self._tried(theta, x, SHARES)
         objective, variant, residual = max(tried, key=lambda one: one[0])
         gain = objective - before
         if gain > 0.0:
             self.model, self.residual = self.model.with_parameters(variant), residual
         return gain, promised
+
+    def _tried(self, theta: Array, x: Array, shares: Sequence[float]) -> list[tuple[float, dict[str, float], Array]]:
+        """Objective, values and residual of shares of a step x (free,) from theta."""
+        names, prior = self.known.names, self.known.prior
+        values = [np.clip(theta + share * x * prior, self.low, self.high) for share in shares]
+        values = [physical(self.model, names, own) for own in values]
+        variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
+        found = residuals(self.evidence, self.model, variants)
+        offsets = [(own - self.known.centre) / prior for own in values]
+        objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
+        return list(zip(objectives, variants, found, strict=True))
 
     def _wanted(self, theta: Array, offset: Array) -> tuple[Array, Array]:
         """Step in priors by reweighted least squares within the ranges, and the residual that the slopes predict."""

@@ -90,6 +90,22 @@ def fitting(
     return given.reshape(-1, *given.shape[-2:]), np.array(np.broadcast_to(tail, (*lanes, others)), order="C"), q
 
 
+def follow_one(
+    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
+    start: float, h: float, stride: int, parts: int,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Run `kernel.follow` along measured (samples, m) from rest (states - m,); returns states and derivatives.
+
+    Both are (samples, states); row 0 of the derivatives is left alone.
+    """
+    frame = measured.shape[1]
+    X = np.empty((len(measured), frame + len(rest)))
+    X[:, :frame], X[0, frame:] = measured, rest
+    out = np.empty_like(X)
+    kernel.follow(X, parameters, inputs, start, h, stride, parts, out)
+    return X, out
+
+
 def follow_lanes(
     kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
     kept: NDArray[np.int64], wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
@@ -103,7 +119,7 @@ def follow_lanes(
     count, samples, width = len(parameters), measured.shape[1], kernel.LANES
     X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
     alone = count % width if count % width <= ALONE else 0
-    together, frame = count - alone, measured.shape[2]
+    together = count - alone
 
     def part(blocks: slice) -> None:
         which = slice(blocks.start * width, min(blocks.stop * width, together))
@@ -115,10 +131,8 @@ def follow_lanes(
     if together:
         _share(part, -(-together // width), threads)
     for lane in range(together, count):
-        states = np.empty((samples, frame + rest.shape[1]))
-        states[:, :frame], states[0, frame:] = measured[min(lane, len(measured) - 1)], rest[lane]
-        rates = np.empty_like(states)
-        kernel.follow(states, parameters[lane], inputs, start, h, stride, parts, rates)
+        given = measured[min(lane, len(measured) - 1)]
+        states, rates = follow_one(kernel, given, inputs, rest[lane], parameters[lane], start, h, stride, parts)
         X[lane], out[lane] = states[:, kept], rates[:, wanted]
     out[:, 0] = out[:, 1] if samples > 1 else 0.0
     return X, out

@@ -17,7 +17,7 @@ from pneumo_ros.plant.effect import Effect, Parameter
 from pneumo_ros.plant.held import held_inputs, input_rows
 from pneumo_ros.plant.kernels import load_kernel
 from pneumo_ros.plant.lacking import lacking, missing_parameters, without_chambers
-from pneumo_ros.plant.lanes import fitting, follow_lanes, run_lanes
+from pneumo_ros.plant.lanes import fitting, follow_lanes, follow_one, run_lanes
 from pneumo_ros.plant.library import USUAL_FRAME, Library, is_part
 from pneumo_ros.plant.uncertainty import SECTION, deviations, nested
 from pneumo_ros.plant.usual import usual_size
@@ -384,17 +384,13 @@ class Model:
         repeats row 1.
         """
         given, tail = np.array(measured, dtype=float, ndmin=2), np.array(rest, dtype=float, ndmin=1)
-        X = np.empty((len(given), len(self.states)))
-        if given.shape[1] + len(tail) != X.shape[1]:
+        if given.shape[1] + len(tail) != len(self.states):
             raise UsageError(f"{given.shape[1]} measured and {len(tail)} other states given; needed: {self.states}")
-        X[:, : given.shape[1]] = given
-        X[0, given.shape[1] :] = tail
-        out = np.empty_like(X)
         held = held_inputs(voltage, self.inputs)
-        if _whole(len(held), parts) < len(X) - 1:
-            raise UsageError(f"{len(held)} voltages do not cover {len(X)} samples")
+        if _whole(len(held), parts) < len(given) - 1:
+            raise UsageError(f"{len(held)} voltages do not cover {len(given)} samples")
         stride, h = substeps(sample_time / parts, step)
-        self.kernel.follow(X, self.values, held, start, h, stride, parts, out)
+        X, out = follow_one(self.kernel, given, held, tail, self.values, start, h, stride, parts)
         out[0] = out[1] if len(out) > 1 else 0.0
         return X, out
 

@@ -43,7 +43,7 @@ def assert_alone(found: tuple[np.ndarray, np.ndarray], lane: int, alone: tuple[n
         assert many[lane].tobytes() == one.tobytes()
 
 
-@pytest.mark.parametrize("lanes", [1, 3, 16, 18, 40])
+@pytest.mark.parametrize("lanes", [1, 3, 16, 17, 18, 40])
 @pytest.mark.parametrize("machine", MACHINES)
 def test_lanes_equal_single_runs_to_the_bit(machine: str, lanes: int) -> None:
     model = MACHINES[machine]

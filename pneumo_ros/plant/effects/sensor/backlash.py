@@ -37,8 +37,7 @@ class Backlash(Effect):
         0.0, "1", "share of the moving mass behind a play", low=0.0, high=0.8, neutral=0.0, usual=0.5
     )
     load_gap = Parameter(
-        4e-4, "m", "width h of the play before the load", low=1e-6, high=0.1, optional=True,
-        shapes="load_share",
+        4e-4, "m", "width h of the play before the load", low=1e-6, high=0.1, optional=True, shapes="load_share",
     )  # fmt: skip
 
     play = State("m", "how far the piston is from the middle of the play before the sensor")
