@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.basefit import ITERATIONS, SMALL_SHARE, Fitted, Known, base_fit, fit_base, strain
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, forms, is_profile, kinds
 from pneumo_ros.diagnose.evidence import Evidence
-from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaped, uneven, unevenness
+from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaping, uneven, unevenness
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -54,7 +54,7 @@ class Fitter:
             if candidates is None
             else _coordinates(start, candidates)
         )
-        self.whole = everything(start, found)  # one kernel for all that may be added
+        self.whole = everything(start, found | shaping(start, list(found)))  # one kernel for all that may be added
         self._profiles: dict[Evidence, dict[str, Array]] = {}  # slopes of profiles, by the evidence they belong to
         self.train = Evidence(start, train)
         self.limits: list[str] = []  # a sentence for every loop that ended at its bound
@@ -84,7 +84,7 @@ class Fitter:
             else:
                 c = next(c for c in coordinates(model.library.find(section)) if c.name == name)
                 middle, usual = _usual(c, model[name])
-                width = usual * c.prior
+                width = usual * (1.0 if model.library.find(section).part else c.prior)  # a valve's curve is no fault
             names.append(name)
             centre.append(middle)
             prior.append(width)
@@ -160,6 +160,15 @@ class Fitter:
         residual = self.train.residual(model) * self.train.noise / self.train.noise_of(model)
         return log_likelihood(self.train, residual) - strain(self.known(model, fixed).offset(model))
 
+    def shaped(self, model: Model) -> Model:
+        """The model, fitted with the parts that shape the laws of its added effects, as a valve's curve.
+
+        Each is free by a usual size. They are fitted, as slopes at the catalogue's curve do not reach another one.
+        """
+        parts = shaping(model, self.added(model))
+        values = {c.name: c.neutral for part in parts.values() for c in part if c.neutral is not None}
+        return self.refit(model.with_effects([*model.effects, *parts], values)) if parts else model
+
     def fits(self, model: Model, bent: Sequence[str] | None = None) -> tuple[BaseFit, BaseFit]:
         """The model on training and held-out evidence; the laws of `bent` (default: all added) are free in shape."""
         train, held = self.fit(model), base_fit(self.held, self.whole, model, self.known(model))
@@ -177,13 +186,10 @@ class Fitter:
         return freed(fit, self.added(model), seen)
 
     def _uneven(self, fit: BaseFit) -> BaseFit:
-        """The fit with each profile free that its model lacks, and the parts that shape the laws of added effects.
-
-        The slopes of profiles hardly change and are made once.
-        """
+        """The fit with each profile free that its model lacks; their slopes hardly change and are made once."""
         if fit.evidence not in self._profiles:
             self._profiles[fit.evidence] = unevenness(fit.evidence, self.whole, self.lacking)
-        return shaped(uneven(fit, self._profiles[fit.evidence]), self.added(fit.model))
+        return uneven(fit, self._profiles[fit.evidence])
 
     @cached_property
     def part(self) -> Evidence:
@@ -192,8 +198,8 @@ class Fitter:
         return Evidence(self.start, some) if some else self.train
 
     def added(self, model: Model) -> list[str]:
-        """Effects of `model` that the start lacks."""
-        return [name for name in model.effects if name not in self.start.effects]
+        """Effects of `model` that the start lacks, without the parts that shape their laws."""
+        return [name for name in model.effects if name not in self.start.effects and not model.library.find(name).part]
 
     @cached_property
     def conditions(self) -> tuple[Array, Array]:

@@ -100,20 +100,6 @@ def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequ
     return found
 
 
-def shaped(fit: BaseFit, added: Sequence[str]) -> BaseFit:
-    """The fit with the parts that shape the laws of `added` effects, as a valve's curve, free by a usual size each."""
-    parts = shaping(fit.model, added)
-    if not parts:
-        return fit
-    own = [c for part in parts.values() for c in part]
-    model = fit.model.with_effects(
-        [*fit.model.effects, *parts], {c.name: c.neutral for c in own if c.neutral is not None}
-    )
-    variants = [{}, *({c.name: c.typical} for c in own if c.is_size)]
-    residual = fit.evidence.residuals(model, vectors(model, variants))
-    return _bent(fit, tuple(c.name for c in own if c.is_size), np.asarray((residual[1:] - residual[0]).T))
-
-
 def shaping(model: Model, added: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:
     """Parts of the library that read a parameter of an effect in `added`, and so shape its law, and their coordinates.
 

@@ -261,7 +261,7 @@ class Search:
 
     def _rank(self, model: Model) -> Ranking:
         """Rank all candidates on the training runs, try the best on the held-out ones."""
-        base, held = self.fitter.fits(self.unstrained(model))
+        base, held = self.fitter.fits(self.fitter.shaped(self.unstrained(model)))
         nothing = unaided(base)
         held = replace(held, residual=held.residual + held.slopes @ nothing.shift)
         hypotheses, screened = self.hypotheses(base)

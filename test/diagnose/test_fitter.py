@@ -5,7 +5,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from identify.making import own
+from identify.making import own, rig
 
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
@@ -97,6 +97,19 @@ def test_priors_are_as_wide_as_the_machine_file_states() -> None:
     assert (widths[STATIC], widths[volume]) == (30.0, 5e-5)
     others = [name for name in plain.names if name != STATIC]
     assert [widths[n] for n in others] == [p for n, p in zip(plain.names, plain.prior, strict=True) if n != STATIC]
+
+
+def test_the_curve_of_an_added_valve_is_fitted_and_no_effect() -> None:
+    """Its index is 0.6: with 0.5, the critical ratio came out as 0.39, and sensors' gains explained what was left."""
+    model, _, run = rig("train_steps", 0, "choked_flow:mixed", 0.95)
+    found = Fitter(model, [run], [run], ["choked_flow"])
+    iso = found.refit(model.with_effects([*model.effects, "choked_flow"]))
+    bent = found.shaped(iso)
+    assert bent["subsonic_index.index"] == pytest.approx(0.6, abs=0.02)
+    assert bent["choked_flow.critical_ratio"] == pytest.approx(0.25, abs=0.02)
+    assert found.added(bent) == ["choked_flow"]
+    assert found.gain(bent, iso) > 100.0
+    assert found.shaped(model) is model
 
 
 def test_a_hypothesis_leaves_the_chambers_some_volume() -> None:

@@ -17,7 +17,6 @@ from pneumo_ros.diagnose.freedom import (
     loosened,
     points_of,
     relative,
-    shaped,
     shaping,
     uneven,
     unevenness,
@@ -161,5 +160,3 @@ def test_what_shapes_the_law_of_an_added_effect_is_no_other_effect() -> None:
     iso = START.with_effects([*START.effects, "choked_flow"])
     assert set(shaping(iso, ["choked_flow"])) == {"path_critical_ratios", "subsonic_index"}
     assert shaping(iso, []) == shaping(MODEL, ["viscous_friction"]) == {}
-    fit = BaseFit(MODEL, MODEL, ("a",), np.ones(1), np.zeros(1), EVIDENCE, LAW, LAW[:, None])
-    assert shaped(fit, ["viscous_friction"]) is fit
