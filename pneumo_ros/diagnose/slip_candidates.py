@@ -29,7 +29,7 @@ SHARE_REMOVED = (
 )
 MOST_FITTED = 3  # candidates that are fitted, those with the best starts
 EXPLAINED = 0.9  # share of the error beyond the noise's
-PART_EXPLAINED = 0.3  # share of the error beyond noise: a candidate that removes as much is restarted from other sizes
+PART_EXPLAINED = 0.3  # share of the error beyond noise: a candidate that removes as much is fitted on, and restarted
 RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size; most of the old error that may be left for another restart
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: an effect's own state starts free in every event, so that it can follow any slow force
@@ -119,7 +119,7 @@ class SlipFits:
         ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
         result = list[Slipping]()
         for best in list(dict.fromkeys(name for (name, _), _ in ranked))[:MOST_FITTED]:
-            fits = [self._fitted(name, model, own) for (name, own), (_, model) in ranked if name == best]
+            fits = [self._tried(name, model, own) for (name, own), (_, model) in ranked if name == best]
             result.append(min(fits, key=self._left))
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
@@ -129,11 +129,16 @@ class SlipFits:
                 break
         return sorted(result, key=self._left)
 
-    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
-        """Fitted from `begin`, with the parameters `own` of the effect free."""
+    def _tried(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
+        """Fitted to some events, and to all of them where it then explains a part of the error of all held-out ones."""
+        few = self._fitted(name, begin, own, some=True)
+        return self._fitted(name, few.model, own) if self._share(few.held) >= PART_EXPLAINED else few
+
+    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
+        """Fitted from `begin` to all training events, or to `some`, with the parameters `own` of the effect free."""
         prior, effect = friction_priors(self.alone, self.known), coordinates(self.alone.library.find(name))
         prior |= {c.name: (3.0 if c.is_size else 1.0) * max(abs(c.scale), abs(begin[c.name])) for c in own}
-        refit = refit_segments(begin, self.found.train(begin), list(prior), prior)
+        refit = refit_segments(begin, self.found.some(begin) if some else self.found.train(begin), list(prior), prior)
         fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in own}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
         asked_for = self._share(held) >= SHARE_REMOVED
@@ -269,8 +274,19 @@ def paired(before: Array, after: Array, samples: int) -> float:
 
 def _cost(effect: Sequence[Coordinate], u: Array, std: Mapping[str, float]) -> float:
     """Nats that the coordinates of an effect cost, with priors of a usual size or a factor e each: see `score`."""
-    units = np.array(
-        [abs(k.value(x)) if k.logarithmic else abs(k.scale) for k, x in zip(effect, u.tolist(), strict=True)]
-    )
-    spread = np.array([std.get(k.name, np.inf) for k in effect]) / np.maximum(units, 1e-300)
-    return 0.5 * float(u @ u) + 0.5 * float(np.sum(np.log1p(1.0 / spread**2)))
+    spread = np.array([std.get(k.name, np.inf) for k in effect])
+    near = np.array([_nearest(k, x, s) for k, x, s in zip(effect, u.tolist(), spread.tolist(), strict=True)])
+    units = np.array([abs(k.value(x) if k.logarithmic else k.scale) for k, x in zip(effect, near, strict=True)])
+    relative = spread / np.maximum(units, 1e-300)
+    return 0.5 * float(near @ near) + 0.5 * float(np.sum(np.log1p(1.0 / relative**2)))
+
+
+def _nearest(k: Coordinate, u: float, std: float) -> float:
+    """The coordinate nearest to the usual one within a deviation of its value; a size is where it is.
+
+    A fit ends anywhere in the range of a shape that the events do not determine, as at a damping of exactly zero.
+    """
+    if k.is_size or not k.logarithmic:
+        return u
+    value = k.value(u)
+    return k.u(min(max(k.typical, value - std), value + std))

@@ -61,6 +61,13 @@ class Slips:
         """Training events, first guesses by `model`; those of the last two models are kept."""
         return self._train(model)
 
+    def some(self, model: Model) -> Segments:
+        """As many of the training events as are needed to judge an effect, evenly chosen from all."""
+        count = len(self.train_rows)
+        return self.train(model).pick(
+            np.unique(np.linspace(0, count - 1, min(count, FEWEST_JUDGED)).round().astype(int))
+        )
+
     def held(self, model: Model) -> Segments:
         """Held-out events, first guesses by `model`."""
         return events(model, self.held_runs, self.held_rows)

@@ -1,6 +1,8 @@
 """Effects that only breakaways and reversals show: they must determine the size, and enough of them must show it."""
 
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -83,10 +85,14 @@ LAG, TRUE = "friction_lag", 8e-3
 BEGUN = {"backlash": 1e-4, LAG: 2e-3}  # initial sizes of the candidates
 
 
+FITTED: list[tuple[str, bool]] = []  # names of candidates that were fitted, and whether to some events only
+
+
 class Stuck(SlipFits):
     """Fits that stay at their start; the misfit is the distance from the true lag; the other candidate is refused."""
 
-    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
+    def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
+        FITTED.append((name, some))
         size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
         error = np.full(40, 1.2 if name != LAG else 1.0 + 1.5 * abs(np.log2(size / TRUE)))
         return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0)
@@ -105,6 +111,51 @@ def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, mo
     nothing = np.empty(0, dtype=np.int64)
     tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([*BEGUN])
     assert {c.name: c.model[f"{LAG}.time_constant"] for c in tried if c.name == LAG} == {LAG: pytest.approx(TRUE)}
+
+
+@pytest.mark.parametrize("lag", [TRUE, 1e-5])
+def test_a_candidate_that_explains_nothing_of_some_events_is_not_fitted_to_all(
+    lag: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = MODEL.with_effects([*MODEL.effects, LAG], {f"{LAG}.time_constant": lag})
+    monkeypatch.setattr(slip_candidates, "by_sizes", lambda *_: (1.0, begun))
+    nothing = np.empty(0, dtype=np.int64)
+    FITTED.clear()
+    (found,) = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([LAG])
+    assert [(LAG, True), (LAG, False)][: 2 if lag == TRUE else 1] == FITTED
+    assert found.model is begun
+
+
+class Numbered(Slips):
+    """Events that are their own number."""
+
+    def train(self, model: Model) -> Any:
+        return SimpleNamespace(pick=lambda chosen: self.train_rows[chosen].tolist())
+
+
+@pytest.mark.parametrize(
+    ("count", "some"), [(40, [0, 4, 7, 11, 14, 18, 21, 25, 28, 32, 35, 39]), (5, [0, 1, 2, 3, 4]), (0, [])]
+)
+def test_some_events_are_spread_evenly(count: int, some: list[int]) -> None:
+    assert Numbered((), (), np.arange(count), np.arange(0)).some(MODEL) == some
+
+
+@pytest.mark.parametrize(("std", "costs"), [(0.2, False), (0.01, True)])
+def test_a_shape_that_the_events_do_not_determine_costs_nothing(std: float, costs: bool) -> None:
+    """A damping of exactly zero is infinitely improbable as a factor, and as good as any within its deviation."""
+    name = "load_compliance"
+    own = coordinates(MODEL.library.find(name))
+    zero = next(c for c in own if c.role == "damping")
+    model = MODEL.with_effects([*MODEL.effects, name], {c.name: 0.0 if c is zero else c.typical for c in own})
+    before, after = np.full(40, 10.0), np.full(40, 1.0)
+    spread = {c.name: 0.1 * c.typical for c in own} | {zero.name: std * zero.typical}
+    candidates = [
+        as_candidate(Slipping(name, one, after, after, spread), own, before, before, 0.5, SAMPLES, True)
+        for one in (model, model.with_parameters({zero.name: zero.typical}))
+    ]
+    lost = candidates[1].score.nats - candidates[0].score.nats
+    assert 0.0 < lost < 20.0
+    assert (lost > 4.0) == costs
 
 
 def test_events_that_nothing_changes_and_single_wild_ones_decide_nothing() -> None:
