@@ -74,7 +74,7 @@ class Candidate:
         if self.size < MATERIAL and self.pays < self.least:
             found.append(f"its size is only {self.size:.2g} times the usual one")
         if self.partial:
-            found.append(f"removes only {100.0 * self.share:.0f} % of the misfit beyond noise")
+            found.append(f"{removes(self.share)} of the misfit beyond noise")
         if self.lag < RESOLVED:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")
         if self.swing < RESOLVED:
@@ -82,3 +82,9 @@ class Candidate:
         if self.refused:
             found.append(self.refused)
         return tuple(found)
+
+
+def removes(share: float) -> str:
+    """What is objected to an effect that removes this share of a misfit; where it rises, nothing is removed."""
+    percent = round(100.0 * share)
+    return f"removes only {percent} %" if percent > 0 else "removes nothing"

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.candidate import Candidate
+from pneumo_ros.diagnose.candidate import Candidate, removes
 from pneumo_ros.diagnose.coordinates import Coordinate, by_kind, coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
@@ -245,7 +245,7 @@ def as_candidate(
     enough = (
         ""
         if share >= SHARE_REMOVED
-        else f"removes only {100.0 * share:.0f} % of the misfit beyond noise at breakaways and reversals"
+        else f"{removes(share)} of the misfit beyond noise at breakaways and reversals"
     )
     if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
         enough = f"the equations along the motion contradict it (they lose {c.against:.3g} in log likelihood)"
