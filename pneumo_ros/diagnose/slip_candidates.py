@@ -243,9 +243,7 @@ def as_candidate(
     gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
     share = share_removed(base_held, c.held, q)
     enough = (
-        ""
-        if share >= SHARE_REMOVED
-        else f"{removes(share)} of the misfit beyond noise at breakaways and reversals"
+        "" if share >= SHARE_REMOVED else f"{removes(share)} of the misfit beyond noise at breakaways and reversals"
     )
     if c.against > max(together(0.5 * samples * (base_train - c.train))[0], CONTRADICTED):
         enough = f"the equations along the motion contradict it (they lose {c.against:.3g} in log likelihood)"

@@ -16,7 +16,6 @@ from pneumo_ros.shooting.start import fit_starts
 Array = NDArray[np.float64]
 Begin = tuple[float, Model]  # a score, the smaller the better, and the model to start with
 
-ONE_IN = 3  # one event in three is enough to choose a start
 LOOKED_AT = 0.95  # share of the events used along a tangent: at slips predicted at the wrong time it is useless
 _SIZES, _FACTORS = (0.3, 1.0, 2.5), (0.25, 0.5, 2.0, 4.0)
 _NEAR = 0.2  # of the usual size: range in which a tangent is trusted
@@ -28,11 +27,10 @@ def by_sizes(alone: Model, found: Slips, name: str, own: tuple[Coordinate, ...])
     `own`: its sizes of one kind and their shapes; the other sizes stay neutral.
     """
     effect = coordinates(alone.library.find(name))
-    some = np.arange(0, len(found.train_rows), ONE_IN)
 
     def tried(values: dict[str, float]) -> Begin:
         model = alone.with_effects([*alone.effects, name], values)
-        return float(np.median(errors(model, found.train(model).pick(some)))), model
+        return float(np.median(errors(model, found.some(model)))), model
 
     options = [tried(_values(effect, own, share)) for share in _SIZES]
     best = min(options, key=lambda option: option[0])[1]
