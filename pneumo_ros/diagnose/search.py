@@ -14,7 +14,7 @@ from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
-from pneumo_ros.diagnose.judging import by_score, freedom, judged, size_in, undetermined
+from pneumo_ros.diagnose.judging import best_forms, freedom, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import (
@@ -47,8 +47,6 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 TEXTURE = 0.01  # of the drive force: a larger force that is unexplained acts at breakaways, too
-PROMISING = 3.0  # log likelihood that a candidate has to gain in the first ranking
-SHOWN_ANYWAY = 4  # candidates tried where none is promising, so that the objections can be shown
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
 ENOUGH = 40  # segments: what is found along the signals needs few more
 VANISHED = "its size vanishes beside the effects added later"
@@ -283,9 +281,9 @@ class Search:
         """The best candidates fitted to all training runs, and the first ranking of all, by part of them."""
         part = self.fitter.ranking_fit(base.model)
         screened, bare = screen(part), unaided(part)
-        promising = [h for h in screened if h.likelihood > bare.likelihood + PROMISING]
-        short = shortlist(part, bare, promising or screened[:SHOWN_ANYWAY], SHORTLIST)
-        fitted = sorted(refine(part, short), key=lambda h: freedom(part, h) - h.likelihood)
+        fitted = sorted(
+            refine(part, shortlist(part, bare, screened, SHORTLIST)), key=lambda h: freedom(part, h) - h.likelihood
+        )
         return refine(base, shortlist(part, bare, fitted, FINALISTS), iterations=2, settled=True), screened
 
     def judged(
@@ -301,7 +299,7 @@ class Search:
         candidates = judged(base, held, hypotheses, held_out(base, held, hypotheses), nothing, first)
         good = [candidate.name for candidate in candidates if not candidate.objections]
         relieving = followed(self.fitter, base, screened, nothing.relief, good)
-        return by_score(candidates + judged(base, held, *relieving, nothing, first))
+        return best_forms(candidates + judged(base, held, *relieving, nothing, first))
 
 
 def _scales(evidence: Evidence, residual: Array) -> dict[str, float]:
