@@ -116,13 +116,10 @@ class SlipFits:
         forms = [(name, own) for name in names for own in by_kind(coordinates(self.alone.library.find(name)))]
         with ThreadPoolExecutor(2) as pool:
             begun = list(pool.map(lambda form: begins(*form), forms))
-            ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
-            chosen = list(dict.fromkeys(name for (name, _), _ in ranked))[:MOST_FITTED]
-            ranked = [one for one in ranked if one[0][0] in chosen]
-            few = list(pool.map(lambda one: self._fitted(one[0][0], one[1][1], one[0][1], some=True), ranked))
+        ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
         result = list[Slipping]()
-        for best in chosen:
-            fits = [self._to_all(c, own) for ((name, own), _), c in zip(ranked, few, strict=True) if name == best]
+        for best in list(dict.fromkeys(name for (name, _), _ in ranked))[:MOST_FITTED]:
+            fits = [self._tried(name, model, own) for (name, own), (_, model) in ranked if name == best]
             result.append(min(fits, key=self._left))
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
@@ -132,9 +129,10 @@ class SlipFits:
                 break
         return sorted(result, key=self._left)
 
-    def _to_all(self, few: Slipping, own: Sequence[Coordinate]) -> Slipping:
-        """A fit to some events, fitted to all where it explains a part of the error of the held-out ones."""
-        return self._fitted(few.name, few.model, own) if self._share(few.held) >= PART_EXPLAINED else few
+    def _tried(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
+        """Fitted to some events, and to all of them where it then explains a part of the error of the held-out ones."""
+        few = self._fitted(name, begin, own, some=True)
+        return self._fitted(name, few.model, own) if self._share(few.held) >= PART_EXPLAINED else few
 
     def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
         """Fitted from `begin` to all training events, or to `some`, with the parameters `own` of the effect free."""
