@@ -14,18 +14,15 @@ from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
-from pneumo_ros.plant.model import STEP
 from pneumo_ros.plant.signals import SIGNALS
-from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.runs.sensors import driven_lanes
+from pneumo_ros.runs.run import Run
+from pneumo_ros.runs.sensors import QUICK, driven_lanes, longest_step, parts_of
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 LANES_AT_ONCE = 16  # parameter vectors driven at once: more take memory, and no less time
-QUICK = 2  # parts of a sample in quick evaluations: their errors cancel in differences of two variants
 SHORT = 1.01e-3  # s: so short a sample is one part when candidates are ranked; the error is 1 % of an effect
-LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
 _SLIP = 6.0  # noise deviations of the position: a piston that moves less rests
 
@@ -75,13 +72,8 @@ def resting(run: Run) -> NDArray[np.bool_]:
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
     """States (n, states) of the model itself, and its claimed derivatives, means over the interval before a sample."""
-    parts = _parts(model, QUICK)
+    parts = parts_of(model)
     return _drive(model, frame.run, frame.states, frame.run.averaged(model.inputs, parts), parts)
-
-
-def _parts(model: Model, enough: int) -> int:
-    """Parts of a sample: `enough`, or all where valves open and close within one: steps of 1 ms are 200 noises off."""
-    return PARTS if model.composition.jumping else enough
 
 
 @dataclass(frozen=True)
@@ -104,7 +96,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     Where a vector has sensor effects, the measured states are first corrected for them:
     x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs.
     """
-    parts = _parts(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
+    parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
     corrects = sensing(model, parameters)
     for rows in _some(np.flatnonzero(~corrects)):
         states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts)
@@ -140,7 +132,7 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
 
 
 def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
-    step = _step(model, run, parts)
+    step = longest_step(model, run, parts)
     rest = model.state()[given.shape[-1] :]
     columns = ("v", *(chamber.state for chamber in model.chambers))
     held = run.averaged(model.inputs, parts)
@@ -151,14 +143,9 @@ def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts:
 
 
 def _drive(model: Model, run: Run, given: Array, held: Array, parts: int) -> tuple[Array, Array]:
-    step = _step(model, run, parts)
+    step = longest_step(model, run, parts)
     rest = model.state()[given.shape[1] :]
     return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts)
-
-
-def _step(model: Model, run: Run, parts: int) -> float:
-    """Longest step of the integration [s]."""
-    return min(1.01 * run.sample_time / parts, STEP if model.composition.jumping else LONGEST)
 
 
 def reads_wrong(effect: type[Effect]) -> bool:
