@@ -1,13 +1,13 @@
 """The starting point for the fit of an effect to breakaways and reversals, and its predicted gain."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
-from pneumo_ros.diagnose.slips import Slips, errors, friction_priors
+from pneumo_ros.diagnose.slips import Slips, errors_of_each, friction_priors
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.problem import Problem
 from pneumo_ros.shooting.refit import unknowns_of
@@ -28,14 +28,15 @@ def by_sizes(alone: Model, found: Slips, name: str, own: tuple[Coordinate, ...])
     """
     effect = coordinates(alone.library.find(name))
 
-    def tried(values: dict[str, float]) -> Begin:
-        model = alone.with_effects([*alone.effects, name], values)
-        return float(np.median(errors(model, found.some(model)))), model
+    def tried(options: Sequence[dict[str, float]]) -> list[Begin]:
+        models = [alone.with_effects([*alone.effects, name], values) for values in options]
+        each = errors_of_each(models, [found.some(model) for model in models]) if models else []
+        return [(float(np.median(one)), model) for one, model in zip(each, models, strict=True)]
 
-    options = [tried(_values(effect, own, share)) for share in _SIZES]
+    options = tried([_values(effect, own, share) for share in _SIZES])
     best = min(options, key=lambda option: option[0])[1]
     values = {c.name: best[c.name] for c in effect}
-    options += [tried(values | shape) for shape in _shapes(own)]
+    options += tried([values | shape for shape in _shapes(own)])
     return min(options, key=lambda option: option[0])
 
 
@@ -54,7 +55,7 @@ class Tangents:
     @classmethod
     def of(cls, alone: Model, found: Slips, known: dict[str, float]) -> "Tangents":
         """The starts of the events are fitted here; `known`: standard deviations of the friction from elsewhere."""
-        return cls(alone, found, fit_starts(alone, found.train(alone)), friction_priors(alone, known))
+        return cls(alone, found, fit_starts(alone, found.train(alone), threads=2), friction_priors(alone, known))
 
     def best(self, name: str, own: tuple[Coordinate, ...]) -> Begin:
         """The effect along its best tangent, and minus the loss that a step along it would save.

@@ -6,7 +6,7 @@ slightly too early or too late, which no start corrects, must not decide.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows, events
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import mechanical
+from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.runs.inputs import measured_inputs
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.problem import NOISE_TAIL
@@ -30,9 +31,10 @@ FRICTION_KEYS = ("static_friction", "coulomb_friction", "stribeck_velocity", "br
 STATIC, COMMON = "lugre_friction.static_friction", 0.005
 FEWEST_FITTED, FEWEST_JUDGED = 5, 12  # events: of training runs for friction, of both kinds for an effect
 SURE_SHARE = 0.02  # relative uncertainty below which a parameter keeps its prior from the equations
-POOR = (
-    1.5  # squared error per sample over the noise's, of most events: above, something between stick and slip is missing
-)
+# squared error per sample over that of noise and texture, of most events: above, something between stick and slip is
+# missing
+POOR = 1.5
+DRAWS = 2  # of unknown forces in each event
 STALLED, REFITS = 0.5, 10  # share of the error above which a refit is not restarted; most refits
 EQUATIONS_OFF = 0.2  # share by which the equations may be wrong about an effect that the events show better
 FEW_PARAMETERS = 3  # parameters: the events are too few to fit more
@@ -92,12 +94,37 @@ def with_values_of(model: Model, other: Model) -> Model:
     return model.with_parameters({n: v for n, v in other.parameters.items() if n in model.parameters})
 
 
-def errors(model: Model, segments: Segments) -> Array:
+def errors(model: Model, segments: Segments, threads: int = 2) -> Array:
     """Robust mean squared error per sample over the noise's (events,), every start fitted."""
-    x = fit_starts(model, segments)
-    whitened = segments.residuals(model, x)[0]
-    far = 0.5 * np.sum(segments.from_guess(model, x)[0] ** 2, axis=1)
-    return np.asarray(2.0 * (np.sum(huber_loss(whitened, NOISE_TAIL), axis=1) + far) / whitened.shape[1])
+    return errors_of_each([model], [segments], threads)[0]
+
+
+def errors_of_each(models: Sequence[Model], segments: Sequence[Segments], threads: int = 1) -> list[Array]:
+    """The same for the same events by models that differ in values alone: (events,) for each, in one batch of lanes."""
+    model, whole = models[0], segments[0].joined(segments[1:])
+    q = np.repeat([one.values for one in models], [len(some) for some in segments], axis=0)
+    begin = np.concatenate([some.seated(one) for one, some in zip(models, segments, strict=True)])
+    x = fit_starts(model, whole, begin, threads=threads, parameters=q)
+    whitened = whole.residuals(model, x, q, threads)[0]
+    far = 0.5 * np.sum(whole.from_guess(model, x, q)[0] ** 2, axis=1)
+    found = 2.0 * (np.sum(huber_loss(whitened, NOISE_TAIL), axis=1) + far) / whitened.shape[1]
+    return list(np.split(found, np.cumsum([len(some) for some in segments])[:-1]))
+
+
+def textured(model: Model, segments: Segments, force: float) -> Array:
+    """The errors (draws, events) of `model` if in each event a force of deviation `force` [N] acts that it lacks.
+
+    Its own predictions, without noise, are the measurements; every start is fitted again.
+    """
+    drive, length = model.inputs.index(DRIVE), segments.samples * segments.parts
+    there = segments.predicted(model, fit_starts(model, segments, threads=2), threads=2)
+    rows = segments.first[:, None] + np.arange(length)
+    found = []
+    for loads in np.random.default_rng(0).normal(0.0, force, (DRAWS, len(segments))):
+        inputs = segments.inputs.copy()
+        inputs[rows, drive] += loads[:, None]
+        found.append(errors(model, replace(segments, inputs=inputs, measured=there)))
+    return np.array(found)
 
 
 def polished(

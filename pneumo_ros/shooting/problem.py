@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
 from pneumo_ros.shooting.segments import Segments
-from pneumo_ros.shooting.slopes import LANES, start_slopes
+from pneumo_ros.shooting.slopes import LANES, Index, start_slopes
 
 Array = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ class Problem:
         """Derivatives (segments, states + free, residuals) by starts in scales and by parameters in priors."""
         steps, (count, n) = self.unknowns.steps(theta, largest_step(self.model)), states.shape
 
-        def residuals(part: Segments, starts: Array) -> Array:
+        def residuals(part: Segments, _rows: Index, starts: Array) -> Array:
             return self.lanes(part, starts, np.tile(theta, (len(starts) // len(part), 1)))
 
         base, slopes = start_slopes(self.model, self.coarse, states, residuals)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _COARSE = 2.0 * STEP  # s
+_ROWS = ("first", "start", "measured", "weight", "guess", "scale", "shown", "row", "run", "at")  # one a segment
 _WRONG = 1e9  # noise deviations: limit of an error, so that its square stays finite
 
 
@@ -56,8 +58,12 @@ class Segments:
 
     def pick(self, chosen: Index) -> "Segments":
         """Some of the segments, by index."""
-        rows = ("first", "start", "measured", "weight", "guess", "scale", "shown", "row", "run", "at")
-        return replace(self, **{name: getattr(self, name)[chosen] for name in rows})
+        return replace(self, **{name: getattr(self, name)[chosen] for name in _ROWS})
+
+    def joined(self, others: Sequence["Segments"]) -> "Segments":
+        """These segments and `others` of the same recordings, as with guesses by other values of the model."""
+        rows: dict[str, Any] = {n: np.concatenate([getattr(s, n) for s in (self, *others)]) for n in _ROWS}
+        return replace(self, **rows)
 
     def guessed(self, model: Model) -> "Segments":
         """The same with guesses by `model`."""
@@ -79,21 +85,23 @@ class Segments:
         return found
 
     def completed(self, model: Model, states: Array, parameters: Array | None = None) -> Array:
-        """States (copies * segments, states) with those that follow from the command, by the values of each copy.
+        """States (copies * segments, states) with those that follow from the command, by the values of each lane.
 
-        parameters (copies * segments, parameters), the same in all segments of a copy, or None for the model's own.
+        parameters (copies * segments, parameters), or None for the model's own.
         """
         if not model.composition.commanded:
             return states
-        copies, given = self._copies(states), ~self.estimated(model)
-        full: Array = states.reshape(copies, *self.guess.shape).copy()
-        values = None if parameters is None else parameters.reshape(copies, len(self), -1)[:, 0]
-        for copy in range(copies):
-            known = self.lead.states(model, model.values if values is None else values[copy])[self.row]
+        copies = self._copies(states)
+        full: Array = states.copy()
+        given, row = np.tile(~self.estimated(model), (copies, 1)), np.tile(self.row, copies)
+        values = model.values[None] if parameters is None else parameters
+        each, lanes = np.unique(values, axis=0, return_inverse=True)
+        for k, own in enumerate(each):
+            known = self.lead.states(model, own)[row]
             for i, column in enumerate(columns(model)):
-                rows = given[:, column]
-                full[copy, rows, column] = known[rows, i]
-        return full.reshape(states.shape)
+                rows = given[:, column] & (lanes.ravel() == k)
+                full[rows, column] = known[rows, i]
+        return full
 
     def coarser(self) -> "Segments":
         """The same for integration in steps of 0.2 ms, with inputs held as long, where samples are that fine.
@@ -155,7 +163,7 @@ class Segments:
         states (copies * segments, states), parameters (copies * segments, parameters) or None for the model's own.
         """
         shape = self._copies(states), len(self), self.samples, len(self.columns)
-        error = self._predict(model, states, parameters, threads).reshape(shape)
+        error = self.predicted(model, states, parameters, threads).reshape(shape)
         with np.errstate(over="ignore", invalid="ignore"):
             error -= self.measured
             error *= self.weight
@@ -163,7 +171,7 @@ class Segments:
             error = np.clip(np.nan_to_num(error, nan=_WRONG), -_WRONG, _WRONG)
         return error.reshape(*shape[:2], shape[2] * shape[3])
 
-    def _predict(self, model: Model, states: Array, parameters: Array | None, threads: int) -> Array:
+    def predicted(self, model: Model, states: Array, parameters: Array | None = None, threads: int = 1) -> Array:
         """Sensor readings along all lanes (lanes, samples, signals)."""
         if model.composition.true_sensors:
             return self.simulate(model, states, parameters, threads, self.columns)

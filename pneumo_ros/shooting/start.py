@@ -57,19 +57,23 @@ def _around(model: Model, run: Run, at: Index, time_before: float, time_after: f
 
 
 def fit_starts(
-    model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS, threads: int = 1
-) -> Array:
+    model: Model, segments: Segments, begin: Array | None = None, iterations: int = _ITERATIONS, threads: int = 1,
+    parameters: Array | None = None,
+) -> Array:  # fmt: skip
     """Initial states (segments, states) by whitened least squares, with priors at their guesses, for each segment.
 
-    `begin` (segments, states): start of the search, by default the guesses.
+    `begin` (segments, states): start of the search, by default the guesses. parameters (segments, parameters): those of
+    each segment, by default the model's own.
     """
     x = segments.seated(model) if begin is None else begin.copy()
     coarse, damping = segments.coarser(), np.full(len(x), 1e-3)
-    residual = _residuals(model, segments, x, threads)[0]
+    q = np.tile(model.values, (len(x), 1)) if parameters is None else parameters
+    residual = _residuals(model, segments, x, threads, q)[0]
     active = np.arange(len(x))
     for _ in range(iterations):
-        candidate = x[active] + _move(model, coarse.pick(active), x[active], residual[active], damping[active], threads)
-        tried = _residuals(model, segments.pick(active), candidate, threads)[0]
+        some, own = coarse.pick(active), q[active]
+        candidate = x[active] + _move(model, some, x[active], residual[active], damping[active], threads, own)
+        tried = _residuals(model, segments.pick(active), candidate, threads, own)[0]
         cost, less = np.sum(residual[active] ** 2, axis=1), np.sum(tried**2, axis=1)
         better = less < cost
         x[active[better]], residual[active[better]] = candidate[better], tried[better]
@@ -77,12 +81,16 @@ def fit_starts(
         active = active[np.where(better, cost - less > _ENOUGH * cost, damping[active] < _STUCK)]
         if not len(active):
             break
-    return segments.completed(model, x)
+    return segments.completed(model, x, q)
 
 
-def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: Array, threads: int) -> Array:
+def _move(
+    model: Model, segments: Segments, x: Array, residual: Array, damping: Array, threads: int, parameters: Array
+) -> Array:
     """Levenberg-Marquardt step (segments, states) from states x with residuals (segments, residuals)."""
-    _, slopes = start_slopes(model, segments, x, lambda part, states: _residuals(model, part, states, threads))
+    _, slopes = start_slopes(
+        model, segments, x, lambda part, rows, states: _residuals(model, part, states, threads, parameters[rows])
+    )
     jacobian = np.swapaxes(slopes, 1, 2)
     normal = np.swapaxes(jacobian, 1, 2) @ jacobian
     gradient = np.einsum("wrs,wr->ws", jacobian, residual)
@@ -91,7 +99,11 @@ def _move(model: Model, segments: Segments, x: Array, residual: Array, damping: 
     return np.asarray(-np.linalg.solve(damped, (gradient / size)[:, :, None])[:, :, 0] / size * segments.scale)
 
 
-def _residuals(model: Model, segments: Segments, states: Array, threads: int) -> Array:
-    """(copies, windows, samples * signals + states): whitened errors and distances from the guess."""
-    errors = segments.residuals(model, states, threads=threads)
-    return np.concatenate([errors, segments.from_guess(model, states)], axis=2)
+def _residuals(model: Model, segments: Segments, states: Array, threads: int, parameters: Array) -> Array:
+    """(copies, windows, samples * signals + states): whitened errors and distances from the guess.
+
+    states (copies * windows, states), parameters (windows, parameters).
+    """
+    q = np.tile(parameters, (len(states) // max(len(segments), 1), 1))
+    errors = segments.residuals(model, states, q, threads)
+    return np.concatenate([errors, segments.from_guess(model, states, q)], axis=2)

@@ -9,12 +9,14 @@ from identify.constant import constant_run, truth
 from pneumo_ros.diagnose.coordinates import Coordinate, by_kind, coordinates
 from pneumo_ros.diagnose.mechanics import driven_by_pressures, event_rows
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
-from pneumo_ros.diagnose.slips import Slips, friction_priors
+from pneumo_ros.diagnose.slips import DRAWS, Slips, errors, errors_of_each, friction_priors, textured
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import mechanical
+from pneumo_ros.shooting.segments import Segments
 
 HIDDEN = {"stribeck_shape.exponent": 1.8}
 VOLTAGES = (0.83, -0.83, 1.0, -1.0, 2.0, -2.0)
+STATIC = "lugre_friction.static_friction"
 RIVALS = ("friction_lag", "payload_mass", "backlash")
 
 
@@ -35,6 +37,32 @@ def slips() -> Slips:
     runs = tuple(driven_by_pressures(truth(), constant_run(v, 3.0, model=machine)) for v in VOLTAGES)
     rows = event_rows(runs)
     return Slips(runs, runs, rows, rows)
+
+
+def test_events_by_several_models_in_one_batch_are_those_of_each() -> None:
+    """To rounding, though each model guesses its own starts, and some starts are found sooner than others."""
+    models = [alone().with_parameters({STATIC: share * alone()[STATIC]}) for share in (1.0, 1.02, 0.97)]
+    found = errors_of_each(models, [slips().some(model) for model in models])
+    for model, own in zip(models, found, strict=True):
+        np.testing.assert_allclose(own, errors(model, slips().some(model)), rtol=1e-12)
+    assert len({float(np.median(own)) for own in found}) == len(models)
+
+
+def test_a_force_that_no_model_has_leaves_what_a_load_of_its_size_leaves() -> None:
+    """Normally distributed forces of 1 N leave less than a load of 1 N in every event, but no order of magnitude."""
+    loaded = truth().with_effects([*truth().effects, "constant_load"], {"constant_load.load": 1.0})
+    runs = tuple(driven_by_pressures(truth(), constant_run(v, 3.0, model=loaded)) for v in VOLTAGES)
+    rows = event_rows(runs)
+    events = Slips(runs, runs, rows, rows).train(alone())
+    left, large, small = (np.exp(np.mean(np.log(one))) for one in (errors(alone(), events), *drawn(events)))
+    assert 0.1 * left < large < left
+    assert small < 0.2 * large
+
+
+def drawn(events: Segments) -> list[np.ndarray]:
+    found = [textured(alone(), events, force) for force in (1.0, 0.1)]
+    assert {one.shape for one in found} == {(DRAWS, len(events))}
+    return found
 
 
 @pytest.mark.check
