@@ -30,6 +30,14 @@ def force(evidence: Evidence, before: Array, after: Array) -> float:
     return float(np.sqrt(np.mean(change**2))) if len(change) else 0.0
 
 
+def unexplained_force(evidence: Evidence, residual: Array) -> float:
+    """Deviation [N] beyond noise of what `residual` leaves of the momentum, in its widest windows; 0 without them."""
+    widest = next((k for k, name in enumerate(evidence.names) if equation_of(name) == "momentum"), None)
+    own = evidence.family == (-1 if widest is None else widest)
+    beyond = (residual[own] ** 2 - 1.0) * evidence.noise[own] ** 2
+    return float(np.sqrt(max(np.mean(beyond), 0.0))) if own.any() else 0.0
+
+
 def mean_squares(evidence: Evidence, residual: Array, rows: Rows | None = None) -> dict[str, float]:
     """Robust mean square of the residual over noise by equation, the mean over its families; at least the noise's.
 

@@ -15,7 +15,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.diagnose.judging import best_forms, freedom, judged, size_in, undetermined
-from pneumo_ros.diagnose.measures import force
+from pneumo_ros.diagnose.measures import force, unexplained_force
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.prediction import (
     no_worse,
@@ -221,7 +221,8 @@ class Search:
             return model, None
         first = model.effects == self.start.effects
         against = partial(self.fitter.against, model)
-        return longer(model, made, ranking.screened, self.fitter.deviations(model), against, first, self.fitter.limits)
+        known, unknown = self.fitter.deviations(model), unexplained_force(self.train, ranking.base.residual)
+        return longer(model, made, ranking.screened, known, against, first, self.fitter.limits, unknown)
 
     def round(self, model: Model, refused: Mapping[str, str]) -> Step:
         """The candidates tried with a model, and the best that is not `refused` (name: reason)."""

@@ -15,11 +15,12 @@ from pneumo_ros.diagnose.judging import magnitude
 from pneumo_ros.diagnose.measures import together
 from pneumo_ros.diagnose.score import TAIL, Score
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
-from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, with_values_of
+from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, textured, with_values_of
 from pneumo_ros.diagnose.steps import Step
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.mechanical import moves
 from pneumo_ros.shooting.refit import refit_segments
+from pneumo_ros.shooting.segments import Segments
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,39 @@ class Slipping:
     against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events need it
 
 
+@dataclass(frozen=True)
+class Misfit:
+    """The errors (events,) of held-out events by a model, judged by their `q`-quantile.
+
+    `least`: that quantile of what noise and forces that no model has leave, over the noise's.
+    """
+
+    events: Array
+    q: float = 0.5
+    least: float = 1.0
+
+    @property
+    def usual(self) -> float:
+        """Their quantile."""
+        return float(np.quantile(self.events, self.q))
+
+    @property
+    def poor(self) -> bool:
+        """Whether something between stick and slip is missing."""
+        return self.usual >= POOR * self.least
+
+    def share(self, after: Array) -> float:
+        """Reduction of the quantile to that of other errors, as a share of its excess over noise and texture."""
+        second = float(np.quantile(after, self.q))
+        return (self.usual - max(second, self.least)) / max(self.usual - self.least, 0.1)
+
+
+def misfits(alone: Model, segments: Segments, force: float) -> list[Misfit]:
+    """By each of `QUANTILES`, where a force of deviation `force` [N] that no model has acts in every event."""
+    own, rough = errors(alone, segments), textured(alone, segments, force)
+    return [Misfit(own, q, 1.0 + float(np.quantile(rough, q))) for q in QUANTILES]
+
+
 def longer(
     model: Model,
     made: tuple[Model, Slips],
@@ -61,27 +95,28 @@ def longer(
     against: Against,
     first: bool,
     limits: list[str],
+    force: float = 0.0,
 ) -> tuple[Model, Step | None]:
     """The model with the effect that its breakaways and reversals need, and the candidates; None if none is needed.
 
     `made`: its mechanics and the events; `known`: standard deviations of its parameters; `against`: log likelihood that
     the equations along the motion lose by an effect; `first`: nothing was added; `limits` takes a sentence for every
-    loop that ended at its bound.
+    loop that ended at its bound; `force` [N]: deviation of what no model explains while the piston slides.
     """
     alone, found = made
-    segments = found.train(alone)
-    train, held = errors(alone, segments), errors(alone, found.held(alone))
-    poor = [q for q in QUANTILES if max(np.quantile(train, q), np.quantile(held, q)) >= POOR]
+    parts = [misfits(alone, segments, force) for segments in (found.train(alone), found.held(alone))]
+    poor = [both for both in zip(*parts, strict=True) if any(one.poor for one in both)]
     if not poor:
         return model, None
-    q = poor[0]
-    tried = SlipFits(alone, found, known, against, held, q, limits).tried(blind(screened, alone, found.inputs))
+    train, held = poor[0]
+    tried = SlipFits(alone, found, known, against, held, limits).tried(blind(screened, alone, found.inputs))
     effects = [coordinates(alone.library.find(c.name)) for c in tried]
+    samples = found.train(alone).samples
     candidates = [
-        as_candidate(c, own, train, held, q, segments.samples, first) for c, own in zip(tried, effects, strict=True)
+        as_candidate(c, own, train.events, held, samples, first) for c, own in zip(tried, effects, strict=True)
     ]
     good = [(c, t) for c, t in zip(tried, candidates, strict=True) if not t.objections]
-    usual = float(np.quantile(held, q))
+    usual = held.usual
     step = Step(model, tuple(candidates), good[0][1] if good else None, (), {"slip": usual}, {"slip": usual})
     if good:
         chosen = good[0][0]
@@ -91,7 +126,7 @@ def longer(
 
 @dataclass(frozen=True)
 class SlipFits:
-    """Fits of effects added to `alone`, judged by the `q`-quantile of errors; `held`: its errors on held-out events.
+    """Fits of effects added to `alone`, judged by the quantile of `held`, its errors on held-out events.
 
     `known`: standard deviations of the friction; `against`: log likelihood that the equations lose by an effect.
     """
@@ -100,8 +135,7 @@ class SlipFits:
     found: Slips
     known: dict[str, float]
     against: Against
-    held: Array
-    q: float
+    held: Misfit
     limits: list[str] = field(default_factory=list)  # a sentence for every loop that ended at its bound
 
     def tried(self, names: Sequence[str]) -> list[Slipping]:
@@ -110,7 +144,7 @@ class SlipFits:
         Sizes of different kinds, which replace each other, are fitted one kind at a time, and the best is kept. The
         search stops at an effect that leaves hardly more than noise.
         """
-        most_are_poor = self.q == QUANTILES[0]
+        most_are_poor = self.held.q == QUANTILES[0]
         tangents = None if most_are_poor else Tangents.of(self.alone, self.found, self.known)
         begins = tangents.best if tangents else partial(by_sizes, self.alone, self.found)
         forms = [(name, own) for name in names for own in by_kind(coordinates(self.alone.library.find(name)))]
@@ -132,7 +166,7 @@ class SlipFits:
     def _tried(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
         """Fitted to some events, and to all of them where it then explains a part of the error of the held-out ones."""
         few = self._fitted(name, begin, own, some=True)
-        return self._fitted(name, few.model, own) if self._share(few.held) >= PART_EXPLAINED else few
+        return self._fitted(name, few.model, own) if self.held.share(few.held) >= PART_EXPLAINED else few
 
     def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
         """Fitted from `begin` to all training events, or to `some`, with the parameters `own` of the effect free."""
@@ -141,7 +175,7 @@ class SlipFits:
         refit = refit_segments(begin, self.found.some(begin) if some else self.found.train(begin), list(prior), prior)
         fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in own}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
-        asked_for = not some and self._share(held) >= SHARE_REMOVED
+        asked_for = not some and self.held.share(held) >= SHARE_REMOVED
         loss = self.against(name, {c.name: fitted[c.name] for c in effect}) if asked_for else 0.0
         return Slipping(name, fitted, train, held, std, loss)
 
@@ -151,7 +185,7 @@ class SlipFits:
         Refitted friction compensates too small a size, and a descent along both stops early; the equations along the
         motion contradict too large a size.
         """
-        if self._share(c.held) < PART_EXPLAINED:
+        if self.held.share(c.held) < PART_EXPLAINED:
             return c
         ways = (self._followed(c, factor) for factor in RESIZED)
         return next((other for other in ways if other is not c), c)
@@ -176,16 +210,13 @@ class SlipFits:
         """Whether another restart is worthwhile: `new` explains more, or the equations no longer contradict it."""
         if (new.against < CONTRADICTED) == (old.against < CONTRADICTED):
             return self._left(new) <= WORTH_RESTART * self._left(old)
-        return new.against < CONTRADICTED and self._share(new.held) >= SHARE_REMOVED
+        return new.against < CONTRADICTED and self.held.share(new.held) >= SHARE_REMOVED
 
     def _explains(self, c: Slipping) -> bool:
-        return self._share(c.held) > EXPLAINED and c.against < CONTRADICTED
-
-    def _share(self, held: Array) -> float:
-        return share_removed(self.held, held, self.q)
+        return self.held.share(c.held) > EXPLAINED and c.against < CONTRADICTED
 
     def _left(self, c: Slipping) -> float:
-        return float(np.quantile(c.train, self.q) + np.quantile(c.held, self.q))
+        return float(np.quantile(c.train, self.held.q) + np.quantile(c.held, self.held.q))
 
 
 def resized(effect: Sequence[Coordinate], model: Model, factor: float) -> dict[str, float]:
@@ -207,12 +238,6 @@ def blind(screened: Sequence[Hypothesis], alone: Model, measured: Collection[str
     return [n for n in few if seen[n] < BLIND or library.find(n).states]
 
 
-def share_removed(before: Array, after: Array, q: float) -> float:
-    """Reduction of the `q`-quantile of errors, as a share of its excess over noise."""
-    first, second = float(np.quantile(before, q)), float(np.quantile(after, q))
-    return (first - max(second, 1.0)) / max(first - 1.0, 0.1)
-
-
 def deviations_better(before: Array, after: Array, samples: int) -> float:
     """Improvement of events of `samples` samples over its scatter; unchanged events do not count."""
     return together(0.5 * samples * (before - after))[1]
@@ -227,21 +252,20 @@ def as_candidate(
     c: Slipping,
     effect: tuple[Coordinate, ...],
     base_train: Array,
-    base_held: Array,
-    q: float,
+    base_held: Misfit,
     samples: int,
     first: bool,
 ) -> Candidate:
-    """The candidate in the form in which all candidates are judged, by the `q`-quantile of errors.
+    """The candidate in the form in which all candidates are judged, by errors without it and those of its model.
 
     `samples`: of an event. All events decide whether there is an effect, the held-out events whether it predicts.
     """
     u = np.array([k.u(c.model[k.name]) for k in effect])
-    every = np.concatenate([base_train, base_held]), np.concatenate([c.train, c.held])
+    every = np.concatenate([base_train, base_held.events]), np.concatenate([c.train, c.held])
     h = Hypothesis(c.name, effect, u, np.empty(0), np.empty(0), t=deviations_better(*every, samples))
-    gained = [paired(before, after, samples) for before, after in (every, (base_held, c.held))]
-    gain = 1.0 - float(np.quantile(c.held, q) / np.quantile(base_held, q))
-    share = share_removed(base_held, c.held, q)
+    gained = [paired(before, after, samples) for before, after in (every, (base_held.events, c.held))]
+    gain = 1.0 - float(np.quantile(c.held, base_held.q)) / base_held.usual
+    share = base_held.share(c.held)
     enough = (
         "" if share >= SHARE_REMOVED else f"{removes(share)} of the misfit beyond noise at breakaways and reversals"
     )

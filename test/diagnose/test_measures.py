@@ -16,6 +16,7 @@ from pneumo_ros.diagnose.measures import (
     gains,
     texture,
     together,
+    unexplained_force,
 )
 
 N, HERE = 4000, 200  # windows, and those in which the effect acts
@@ -43,6 +44,20 @@ def test_a_rare_effect_counts_where_it_acts() -> None:
     assert gains(EVIDENCE, before, NOISE)["chamber_a"] < 0.12
     assert gains(EVIDENCE, before, NOISE, there)["chamber_a"] == pytest.approx(1.5**2 / (1.0 + 1.5**2), abs=0.1)
     assert explained(EVIDENCE, before, NOISE, there) > 0.8
+
+
+@pytest.mark.parametrize(("force", "least", "most"), [(0.0, 0.0, 0.05), (0.5, 0.48, 0.52)])
+def test_the_force_that_stays_unexplained_is_that_beyond_noise(force: float, least: float, most: float) -> None:
+    """By the widest windows alone, which have the least noise; the chambers have none of it."""
+    names = ("momentum 100 ms", "momentum 40 ms", "chamber_a 200 ms")
+    family, noise = np.repeat(np.arange(3), N), np.repeat([0.1, 0.5, 1e-6], N)
+    evidence = cast(Evidence, SimpleNamespace(names=names, family=family, noise=noise))
+    residual = np.random.default_rng(1).normal(size=3 * N)
+    residual[:N] += np.where(np.arange(N) % 2, force, -force) / 0.1
+    residual[N:] *= 100.0
+    assert least <= unexplained_force(evidence, residual) <= most
+    gas = SimpleNamespace(names=names[2:], family=np.zeros(N, dtype=np.int64), noise=noise[:N])
+    assert unexplained_force(cast(Evidence, gas), residual[:N]) == 0.0
 
 
 def test_what_acts_but_explains_nothing_gains_nothing() -> None:

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose import slip_candidates
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
-from pneumo_ros.diagnose.slip_candidates import SlipFits, Slipping, as_candidate, deviations_better, paired, resized
+from pneumo_ros.diagnose.slip_candidates import (
+    Misfit,
+    SlipFits,
+    Slipping,
+    as_candidate,
+    deviations_better,
+    paired,
+    resized,
+)
 from pneumo_ros.diagnose.slips import Slips
 from pneumo_ros.plant import Model, load_model
 
@@ -25,7 +33,7 @@ SAMPLES = 300
 
 def tried(model: Model, before: Array, after: Array, std: dict[str, float], q: float = 0.5) -> Candidate:
     effect = coordinates(MODEL.library.find(EFFECT))
-    return as_candidate(Slipping(EFFECT, model, after, after, std), effect, before, before, q, SAMPLES, True)
+    return as_candidate(Slipping(EFFECT, model, after, after, std), effect, before, Misfit(before, q), SAMPLES, True)
 
 
 @pytest.mark.parametrize(("std", "objects"), [(1.5, False), (13.8, True), (None, True)])
@@ -49,12 +57,21 @@ def test_an_effect_in_two_events_of_five_shows_in_the_upper_quartile(changed: in
     assert bool(tried(model, before, after, {f"{EFFECT}.rise": 1.5}, 0.75).objections) is objects
 
 
+@pytest.mark.parametrize(("least", "poor", "share"), [(1.0, True, 8.0 / 9.0), (4.0, True, 1.0), (8.0, False, 1.0)])
+def test_what_noise_and_texture_leave_is_no_misfit(least: float, poor: bool, share: float) -> None:
+    before = Misfit(np.full(40, 10.0), 0.5, least)
+    assert before.poor is poor
+    assert before.share(np.full(40, 2.0)) == pytest.approx(share)
+    assert before.share(np.full(40, 12.0)) < 0.0
+
+
 def test_what_the_equations_along_the_motion_speak_against_is_refused() -> None:
     model = MODEL.with_effects([*MODEL.effects, EFFECT], {f"{EFFECT}.rise": RISE})
     before, after = np.full(40, 10.0), np.full(40, 1.0)
     for against, objects in ((-3.0, False), (60.0, False), (130.0, True)):  # forty events support it by 3 each
         candidate = Slipping(EFFECT, model, after, after, {f"{EFFECT}.rise": 1.5}, against)
-        candidate = as_candidate(candidate, coordinates(MODEL.library.find(EFFECT)), before, before, 0.5, SAMPLES, True)
+        own = coordinates(MODEL.library.find(EFFECT))
+        candidate = as_candidate(candidate, own, before, Misfit(before), SAMPLES, True)
         assert any("contradict it" in words for words in candidate.objections) is objects
         assert bool(candidate.objections) is objects
 
@@ -109,7 +126,7 @@ def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, mo
     monkeypatch.setattr(slip_candidates, "by_sizes", begins)
     monkeypatch.setitem(BEGUN, LAG, begun)
     nothing = np.empty(0, dtype=np.int64)
-    tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([*BEGUN])
+    tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, Misfit(np.full(40, 6.0))).tried([*BEGUN])
     assert {c.name: c.model[f"{LAG}.time_constant"] for c in tried if c.name == LAG} == {LAG: pytest.approx(TRUE)}
 
 
@@ -121,7 +138,7 @@ def test_a_candidate_that_explains_nothing_of_some_events_is_not_fitted_to_all(
     monkeypatch.setattr(slip_candidates, "by_sizes", lambda *_: (1.0, begun))
     nothing = np.empty(0, dtype=np.int64)
     FITTED.clear()
-    (found,) = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, np.full(40, 6.0), 0.5).tried([LAG])
+    (found,) = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, Misfit(np.full(40, 6.0))).tried([LAG])
     assert [(LAG, True), (LAG, False)][: 2 if lag == TRUE else 1] == FITTED
     assert found.model is begun
 
@@ -150,7 +167,7 @@ def test_a_shape_that_the_events_do_not_determine_costs_nothing(std: float, cost
     before, after = np.full(40, 10.0), np.full(40, 1.0)
     spread = {c.name: 0.1 * c.typical for c in own} | {zero.name: std * zero.typical}
     candidates = [
-        as_candidate(Slipping(name, one, after, after, spread), own, before, before, 0.5, SAMPLES, True)
+        as_candidate(Slipping(name, one, after, after, spread), own, before, Misfit(before), SAMPLES, True)
         for one in (model, model.with_parameters({zero.name: zero.typical}))
     ]
     lost = candidates[1].score.nats - candidates[0].score.nats
