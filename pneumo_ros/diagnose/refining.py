@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.significance import covariances, significance
 
 Array = NDArray[np.float64]
 
+NEAR = 0.1  # usual sizes, or of a logarithm: over so small a step slopes hardly change
 FEW_SIZES = 3  # sizes: an effect with more starts from the linear fit only
 
 
@@ -30,14 +31,14 @@ def refine(
 
     Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
-    best = [replace(h, likelihood=-np.inf) for h in hypotheses]
+    best = [replace(h, likelihood=-np.inf, slopes=np.empty((0, 0))) for h in hypotheses]
     begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
-    moving, known = list(range(len(best))), dict[int, Array]()  # slopes of profiles, which hardly change
+    moving = list(range(len(best)))
     for _k in range(iterations):
         variants: list[dict[str, float]] = []
         spans = {}
         for i in moving:
-            probes = [] if i in known else _probes(best[i], begins[i])
+            probes = [] if keeps_slopes(best[i], begins[i]) else _probes(best[i], begins[i])
             spans[i] = len(variants)
             variants += [_values(best[i], v) for v in (begins[i], *probes)]
         if not moving:
@@ -45,9 +46,7 @@ def refine(
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
         for i in tuple(moving):
             h, u, at = best[i], begins[i], spans[i]
-            C = known[i] if i in known else _slopes(h, u, residual[at : at + 1 + len(u)])
-            if _is_profile(h):
-                known[i] = C
+            C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual[at : at + 1 + len(u)])
             tried = _judge(base, h, u, residual[at], C)
             if tried.likelihood > h.likelihood:
                 best[i], begins[i] = tried, _next(base, tried, C, residual[at])
@@ -56,6 +55,11 @@ def refine(
             if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(begins[i] - best[i].u)) < 3e-3:
                 moving.remove(i)
     return best
+
+
+def keeps_slopes(h: Hypothesis, u: Array) -> bool:
+    """Whether the slopes at a hypothesis serve at u, too: those of a profile hardly change anywhere."""
+    return len(h.slopes) > 0 and (_is_profile(h) or float(np.max(np.abs(u - h.u))) <= NEAR)
 
 
 def _is_profile(h: Hypothesis) -> bool:

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.refining import bounded_step
+from pneumo_ros.diagnose.refining import NEAR, bounded_step, keeps_slopes
 from pneumo_ros.plant import load_model
 
 OWN = coordinates(load_model("axis").library.find("asymmetric_viscous_friction"))
+PROFILE = coordinates(load_model("axis").library.find("position_dependent_friction"))
 BASE = 3  # parameters of the model itself
 
 
@@ -33,3 +34,12 @@ def test_a_step_is_the_best_within_the_bounds(seed: int) -> None:
     cost = [float(np.sum((rows @ x + np.append(here, np.zeros(BASE + 2))) ** 2)) for x in (step, best)]
     assert (step[BASE:] >= -h.u).all()
     assert cost[0] == pytest.approx(cost[1], rel=1e-6)
+
+
+@pytest.mark.parametrize(("own", "far"), [(OWN, False), (PROFILE, True)])
+def test_slopes_serve_nearby_and_those_of_a_profile_anywhere(own: tuple[Coordinate, ...], far: bool) -> None:
+    at = np.full(len(own), 0.4)
+    h = Hypothesis("", own, at, np.zeros(BASE), np.zeros(60), slopes=np.ones((60, len(own))))
+    assert keeps_slopes(h, at + 0.9 * NEAR)
+    assert keeps_slopes(h, at + np.eye(len(own))[0] * 1.1 * NEAR) is far
+    assert not keeps_slopes(Hypothesis("", own, at, np.zeros(BASE), np.zeros(60)), at)
