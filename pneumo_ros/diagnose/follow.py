@@ -16,13 +16,12 @@ from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
-from pneumo_ros.runs.sensors import QUICK, driven_lanes, longest_step, parts_of
+from pneumo_ros.runs.sensors import QUICK, SHORT, driven_lanes, longest_step, parts_of
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 LANES_AT_ONCE = 16  # parameter vectors driven at once: more take memory, and no less time
-SHORT = 1.01e-3  # s: so short a sample is one part when candidates are ranked; the error is 1 % of an effect
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
 _SLIP = 6.0  # noise deviations of the position: a piston that moves less rests
 
@@ -94,7 +93,8 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     """States and claimed derivatives of a run by each parameter vector; those along the same states one after another.
 
     Where a vector has sensor effects, the measured states are first corrected for them:
-    x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs.
+    x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs: a short sample
+    is one part, with an error of 1 % of an effect.
     """
     parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
     corrects = sensing(model, parameters)

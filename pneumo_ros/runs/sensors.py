@@ -20,7 +20,8 @@ Drive = Callable[[Array, Index], tuple[Array, Array]]
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
 LAST = 20  # samples at the end by which a reading goes on
 QUICK = 2  # parts of a sample along a measured motion: their errors cancel in differences of two variants
-LONGEST = 1.01e-3  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
+SHORT = 1.01e-3  # s: a sample that is cut into few parts
+LONGEST = SHORT  # s, integration step: the fastest state of an effect, a delay of 2 ms, is unstable from 1.15 ms on
 _ENOUGH = (1e-7, 1.0, 1.0)  # m, Pa, Pa: a tenth of what any sensor of such a machine resolves
 
 
@@ -34,9 +35,12 @@ def corrected(model: Model, frame: Array, run: Run) -> Array:
 
 
 def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
-    """As `Model.follow` along the corrected frame: states, frame included, and mean derivatives, both (n, states)."""
-    rest, parts = model.state()[frame.shape[1] :], parts_of(model)
-    held, step = run.averaged(model.inputs, parts), longest_step(model, run, parts)
+    """As `Model.follow` along the corrected frame: states, frame included, and mean derivatives, both (n, states).
+
+    In steps of half a millisecond where the samples are that fine: first guesses need no more.
+    """
+    rest, parts = model.state()[frame.shape[1] :], parts_of(model) if run.sample_time < SHORT else PARTS
+    held, step = run.averaged(model.inputs, parts), STEP if parts == PARTS else longest_step(model, run, parts)
 
     def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
         states, rates = model.follow(
