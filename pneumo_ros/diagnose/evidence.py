@@ -206,7 +206,7 @@ class RunEvidence:
             if variant.along != along:
                 along = variant.along
                 own = [
-                    _weighed(self._measured(model, f, variant.states), m)
+                    _weighed(self._measured(model, f, variant.frame), m)
                     for f, m in zip(self.families, measured, strict=True)
                 ]
             q = parameters[variant.index]
@@ -235,11 +235,11 @@ class RunEvidence:
 
     def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: int) -> Array:
         if measured is None:
-            return self._slips(model, q, variant.states, late)
+            return self._slips(model, q, variant, late)
         if isinstance(measured, MeasuredChamber):
             return measured.value(variant.claimed[:, measured.column - 1])
-        rows = measured.bump.centres(len(variant.states))
-        mass = self.piston + self._see(model, q, variant.states[rows], rows)["added_mass"]
+        rows = measured.bump.centres(len(variant.frame))
+        mass = self.piston + self._see(model, q, variant.states(rows), rows)["added_mass"]
         return measured.value(mass, variant.claimed[:, 0])
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:
@@ -249,7 +249,7 @@ class RunEvidence:
         model.kernel.observe(np.ascontiguousarray(states), q, held, self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
-    def _slips(self, model: Model, q: Array, states: Array, late: int) -> Array:
+    def _slips(self, model: Model, q: Array, variant: Followed, late: int) -> Array:
         """Largest force that friction held before each slip, minus the static friction claimed at that moment.
 
         More by `lowered`, what the slip lies below it for other reasons. The recording shows it `late` samples late.
@@ -257,13 +257,13 @@ class RunEvidence:
         if not self.breakaways:
             return np.empty(0)
         rows = np.concatenate(self.spans)
-        seen = self._see(model, q, states[rows], rows)
+        seen = self._see(model, q, variant.states(rows), rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
         largest = [
             max(float((d * np.convolve(part, self.kernel, "same")[_earlier(inner, late)]).max()), 0.0)
             for part, inner, d in zip(load, self.inner, self.direction, strict=True)
         ]
-        there = states[self.rested].copy()
+        there = variant.states(self.rested)
         there[:, 1] = self.direction * _CREEP
         return np.asarray(np.array(largest) + self.lowered - self._see(model, q, there, self.rested)["static_level"])
 

@@ -14,6 +14,8 @@ from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.lanes import acting_in
+from pneumo_ros.plant.reach import fades
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import QUICK, SHORT, driven_lanes, longest_step, parts_of
@@ -77,16 +79,27 @@ def follow(model: Model, frame: Frame) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Followed:
-    """A run by one parameter vector: its index, states (n, states), claimed derivatives of v and each pressure.
+    """A run by one parameter vector: its index, its states, and claimed derivatives of v and each pressure.
 
-    The latter (n, 1 + chambers) are means over the interval before each sample.
+    frame (n, 2 + chambers): the measured states, corrected for sensors; own (n, columns): states in these `columns`;
+    rest (states,): all others stay as they begin. claimed (n, 1 + chambers): means over the interval before a sample.
     `along`: index of a vector whose sensors read the same, so that the frame's states are alike; None: as measured.
     """
 
     index: int
-    states: Array
+    frame: Array
+    own: Array
+    columns: Index
+    rest: Array
     claimed: Array
     along: int | None
+
+    def states(self, rows: Index) -> Array:
+        """All states (rows, states) at some samples."""
+        found = np.tile(self.rest, (len(rows), 1))
+        found[:, : self.frame.shape[1]] = self.frame[rows]
+        found[:, self.columns] = self.own[rows]
+        return found
 
 
 def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
@@ -97,15 +110,27 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     is one part, with an error of 1 % of an effect.
     """
     parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
-    corrects = sensing(model, parameters)
+    corrects, rest, m = sensing(model, parameters), model.state(), frame.states.shape[1]
     for rows in _some(np.flatnonzero(~corrects)):
-        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts)
-        for k, x, m in zip(rows, states, mean, strict=True):
-            yield Followed(int(k), x, m, None)
+        own = _moving(model, parameters[rows])
+        columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
+        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts, own)
+        for k, x, d in zip(rows, states, mean, strict=True):
+            yield Followed(int(k), frame.states, x, columns, rest, d, None)
+    columns = np.arange(m, len(rest))
     for rows in _some(np.flatnonzero(corrects)):
         states, mean, first = _corrected(model, frame, parameters[rows], parts)
         for j in np.argsort(first, kind="stable"):
-            yield Followed(int(rows[j]), states[j], mean[j], int(rows[first[j]]))
+            x = states[j]
+            yield Followed(int(rows[j]), x[:, :m], x[:, m:], columns, rest, mean[j], int(rows[first[j]]))
+
+
+def _moving(model: Model, parameters: Array) -> list[str]:
+    """States of effects of which one acts by any of the parameter vectors (lanes, parameters)."""
+    fading = [effect for effect in model.composition.effects if fades(effect)]
+    acts = acting_in(model.composition.effects, parameters)
+    still = {name for effect, own in zip(fading, acts.T, strict=True) if not own.any() for name in effect.states}
+    return [name for name in model.states[model.frame :] if name not in still]
 
 
 def _some(own: Index) -> Iterator[Index]:
@@ -131,14 +156,17 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
     return states, mean, first[group]
 
 
-def _drive_lanes(model: Model, run: Run, given: Array, parameters: Array, parts: int) -> tuple[Array, Array]:
+def _drive_lanes(
+    model: Model, run: Run, given: Array, parameters: Array, parts: int, states: Sequence[str] | None = None
+) -> tuple[Array, Array]:
+    """States, or those named (lanes, n, states), and claimed derivatives of lanes driven along given states."""
     step = longest_step(model, run, parts)
     rest = model.state()[given.shape[-1] :]
     columns = ("v", *(chamber.state for chamber in model.chambers))
     held = run.averaged(model.inputs, parts)
     return model.follow_lanes(
         given, held, rest, parameters, sample_time=run.sample_time, step=step, start=run.begin, parts=parts,
-        columns=columns,
+        states=states, columns=columns, passing=True,
     )  # fmt: skip
 
 

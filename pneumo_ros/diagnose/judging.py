@@ -58,7 +58,8 @@ def judged(
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
     here = alone.fit[2]
     ends = [np.where(points_of(base, h), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)]
-    alone = scoring.best(base.everything, fits, [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)])
+    ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
+    alone = scoring.best(base.everything, fits, ways, threads=2)
     before, unaided = alone.fit[1], surprise(base, alone.fit[2])
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.best.evidence - alone.evidence

@@ -1,6 +1,7 @@
 """Candidates fitted to the evidence by Gauss-Newton, many at once, each with its own best base parameters."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -44,17 +45,26 @@ def refine(
         if not moving:
             break
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
-        for i in tuple(moving):
-            h, u, at = best[i], begins[i], spans[i]
-            C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual[at : at + 1 + len(u)])
-            tried = _judge(base, h, u, residual[at], C)
-            if tried.likelihood > h.likelihood:
-                best[i], begins[i] = tried, _next(base, tried, C, residual[at])
-            else:
-                begins[i] = 0.5 * (u + h.u)
-            if 0.0 < tried.likelihood - h.likelihood < 0.3 or np.max(np.abs(begins[i] - best[i].u)) < 3e-3:
-                moving.remove(i)
+        own = [residual[spans[i] : spans[i] + 1 + len(begins[i])] for i in moving]
+        with ThreadPoolExecutor(2) as pool:
+            taken = list(pool.map(lambda i, r: _advanced(base, best[i], begins[i], r), moving, own))
+        for i, (h, u, _) in zip(moving, taken, strict=True):
+            best[i], begins[i] = h, u
+        moving = [i for i, (_, _, settles) in zip(moving, taken, strict=True) if not settles]
     return best
+
+
+def _advanced(base: BaseFit, h: Hypothesis, u: Array, residual: Array) -> tuple[Hypothesis, Array, bool]:
+    """The better of a hypothesis and of itself at u, where to try it next, and whether it has settled.
+
+    residual (1 or 1 + coordinates, residuals): at u, and at its probes if the slopes are not kept.
+    """
+    C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual)
+    tried = _judge(base, h, u, residual[0], C)
+    better = tried.likelihood > h.likelihood
+    found, begin = (tried, _next(base, tried, C, residual[0])) if better else (h, 0.5 * (u + h.u))
+    little = 0.0 < tried.likelihood - h.likelihood < 0.3
+    return found, begin, bool(little or np.max(np.abs(begin - found.u)) < 3e-3)
 
 
 def keeps_slopes(h: Hypothesis, u: Array) -> bool:
@@ -89,10 +99,11 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
     if not variants:
         return []
     residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
+    with ThreadPoolExecutor(2) as pool:
+        likelihood = list(pool.map(lambda r: at_best(base, r)[2], residual))
     found, at = [], 0
     for own in options:
-        likelihood = [at_best(base, r)[2] for r in residual[at : at + len(own)]]
-        found.append(own[int(np.argmax(likelihood))])
+        found.append(own[int(np.argmax(likelihood[at : at + len(own)]))])
         at += len(own)
     return found
 

@@ -13,6 +13,7 @@ equation seen through windows of two widths counts half by each.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
@@ -101,7 +102,7 @@ class Scoring:
         levels = [part.noise_of(model) for part in parts]
         return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
 
-    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit]) -> Best:
+    def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit], threads: int = 1) -> Best:
         """The log evidence of a fit, its base parameters moved to where that of all runs is largest.
 
         `fits`: slopes of training and held-out residuals. A fit to windows as if they were independent leaves a little
@@ -118,7 +119,8 @@ class Scoring:
             found = _evidence(families)
             return float(found.sum()) - strain(one[2] + fits[0].offset), Best(found, one), families
 
-        best = max(map(valued, starts), key=lambda one: one[0])
+        with ThreadPoolExecutor(threads) as pool:
+            best = max(pool.map(valued, starts), key=lambda one: one[0])
         for _ in range(STEPS):
             step = self._step(fits, best[1].fit, best[2])
             tried = valued(moved(best[1].fit, fits, step))

@@ -88,8 +88,9 @@ class Composition:
 
 # names the generated module uses itself
 _WORDS = """x q u h k s i j b c X _ out half middle elapsed inputs row first t0 stride parts steps values np math LANES
-entry inline derivatives after_step observation sensing step step_lanes run run_lanes follow rates observe sense
-interval lead lead_derivatives lead_after at"""
+entry inline block cells width acting derivatives after_step observation sensing step step_lanes run run_lanes follow
+rates observe sense interval lead lead_derivatives lead_after at"""
+_ALIKE = (("d_", ""), ("r_", ""), ("", "_m"), ("", "_n"), ("mean_", ""), ("end_", ""))  # names made from a state's
 _RESERVED = {*_WORDS.split(), *vars(maths), *vars(builtins)}
 
 
@@ -134,7 +135,8 @@ class Resolver:
     def _check_names(self) -> None:
         for state, effect in self.states.items():
             self._check_begin(state, effect)
-            for name in {f"d_{state}", f"r_{state}", f"{state}_m", f"{state}_n"} & set(self.states):
+            alike = (f"{before}{state}{after}" for before, after in _ALIKE)
+            for name in {*alike} & set(self.states):
                 raise UsageError(
                     f"state {name} of effect {self.states[name].name} is too similar to state {state}; rename it"
                 )

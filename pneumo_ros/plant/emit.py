@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from pneumo_ros.plant.jit import entry, exponent, inline, mantissa, power_of_two
+from pneumo_ros.plant.jit import block, entry, exponent, get, inline, mantissa, power_of_two, put
 
 LANES = {lanes}
 '''
@@ -48,17 +48,17 @@ def module_text(
     sensing = _observation("sensing", resolver, book, states, sensed, names) if sensed else ""
     lead = lead_texts(resolver, book, commanded, names) if commanded else []
     listed = ", ".join(effect.name for effect in resolver.effects)
-    parts = [_HEADER.format(effects=listed, lanes=LANES), *book.texts, derivatives, after, observation]
+    parts = [derivatives, after, observation]
     inputs = list(resolver.inputs)
     parts += [step_text(resolver, states, rates, names)]
     parts += [run_text(states, inputs, names), lanes_text(states, inputs, names)]
-    parts += [follow_text(resolver, states, rates, names), follow_lanes_text(resolver, states, rates, names)]
+    parts += [follow_text(resolver, states, rates, names), follow_lanes_text(resolver, book, states, rates, names)]
     parts += [pointwise_text("rates", "derivatives", states, inputs, len(states), names)]
     parts += [pointwise_text("observe", "observation", states, inputs, len(observed), names)]
     if sensed:
         parts += [sensing, sense_text(states, inputs, len(sensed), names)]
     parts += lead
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join([_HEADER.format(effects=listed, lanes=LANES), *book.texts, *parts]) + "\n"
 
 
 def _function(name: str, arguments: list[str], lines: list[str], returns: list[str]) -> str:

@@ -1,12 +1,13 @@
 """Order the calls of effects by data flow: an effect that reads a signal runs after all that write it."""
 
 import ast
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import maths
 from pneumo_ros.plant.effect import Effect
-from pneumo_ros.plant.reach import default_of, names_in
+from pneumo_ros.plant.reach import default_of, fades, names_in
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.plant.source import SourceBook
 
@@ -14,16 +15,34 @@ if TYPE_CHECKING:
     from pneumo_ros.plant.compose import Resolver
 
 
+@dataclass(frozen=True)
+class Line:
+    """A line of a function body, and the effect without which it may be passed over: None if it never may.
+
+    `instead`: lines that then give what it assigns; `idle`: what it assigns then that is constant, by variable.
+    """
+
+    text: str
+    effect: type[Effect] | None = None
+    instead: tuple[str, ...] = ()
+    idle: tuple[tuple[str, float], ...] = ()
+
+
 class FlowWriter:
     """Writes one function body: every signal that the wanted names depend on, each once, in order of data flow."""
 
     def __init__(self, resolver: "Resolver", book: SourceBook) -> None:
         self.resolver, self.book = resolver, book
-        self.lines: list[str] = []
+        self.written: list[Line] = []
         self._done: dict[str, str] = {}  # signal or der_/rate_ name -> variable or literal
         self._stages: dict[tuple[str, int], str] = {}  # single signal, how often rewritten -> variable or literal
         self._called: set[tuple[str, str]] = set()
         self._open: list[str] = []
+
+    @property
+    def lines(self) -> list[str]:
+        """The texts of its lines."""
+        return [line.text for line in self.written]
 
     def value(self, name: str, effect: type[Effect] | None = None) -> str:
         """Variable that holds `name` (state, signal, derivative or parameter), after writing the lines it needs."""
@@ -69,7 +88,7 @@ class FlowWriter:
         terms = [f"{effect.name}__{name}" for effect, _ in writers]
         if len(terms) < 2:
             return terms[0] if terms else SIGNALS[name].default
-        self.lines.append(f"{name} = {(' + ' if kind == 'sum' else ' * ').join(terms)}")
+        self.written.append(Line(f"{name} = {(' + ' if kind == 'sum' else ' * ').join(terms)}"))
         return name
 
     def _single(self, name: str, writers: list[tuple[type[Effect], str]]) -> str:
@@ -96,7 +115,15 @@ class FlowWriter:
         return self._stages[name, count]
 
     def _default(self, name: str) -> str:
-        """Emit the default expression of a single signal with every name in it resolved."""
+        """Variable or literal of the default of a single signal, after writing the line it needs."""
+        text = self._default_text(name)
+        if isinstance(ast.parse(text, mode="eval").body, ast.Name | ast.Constant):
+            return text
+        self.written.append(Line(f"{name} = {text}"))
+        return name
+
+    def _default_text(self, name: str) -> str:
+        """The default expression of a single signal with every name in it resolved."""
         default = default_of(SIGNALS[name], self.resolver.measured)
         tree: Any = ast.parse(default, mode="eval")
         if SIGNALS[name].without and any(self._lacks(key) for key in names_in(default)):
@@ -106,10 +133,7 @@ class FlowWriter:
                 node.id = self.book.helper(getattr(maths, node.id), f"signal {name}")
             elif isinstance(node, ast.Name):
                 node.id = self._known(node.id, name)
-        if isinstance(tree.body, ast.Name | ast.Constant):
-            return ast.unparse(tree)
-        self.lines.append(f"{name} = {ast.unparse(tree)}")
-        return name
+        return ast.unparse(tree)
 
     def _known(self, name: str, wanted: str) -> str:
         if self._lacks(name):
@@ -128,7 +152,41 @@ class FlowWriter:
         self._called.add((effect.name, function))
         called = self.book.add(data, f"{effect.name}__{function}", f"effect {effect.name}")
         targets = ", ".join(f"{effect.name}__{name}" for name in data.writes)
-        self.lines.append(f"{targets} = {called}({arguments})")
+        self.written.append(self._passable(f"{targets} = {called}({arguments})", effect, function))
+
+    def _passable(self, text: str, effect: type[Effect], function: str) -> Line:
+        """The line `text`, which calls a function, with what stands for its values where its effect adds nothing."""
+        instead, idle = list[str](), list[tuple[str, float]]()
+        for name in () if function == "advance" else effect.functions[function].writes:
+            variable, kind = f"{effect.name}__{name}", SIGNALS[name].kind if name in SIGNALS else "sum"
+            if kind in ("sum", "product"):
+                idle.append((variable, 0.0 if kind == "sum" else 1.0))
+            elif (effect, function) in self._changes(name):
+                instead.append(f"{variable} = {self._argument(name, effect, function)}")
+            elif self._stands_alone(name, effect):
+                instead.append(f"{variable} = {self._default_text(name)}")
+            else:
+                return Line(text)
+        return Line(text, effect if fades(effect) else None, tuple(instead), tuple(idle))
+
+    def _stands_alone(self, name: str, effect: type[Effect]) -> bool:
+        """Whether the default of a single signal needs, at an instant, neither `effect` nor what the machine lacks."""
+        todo, seen = [one for one in self._defaults(name) if not hasattr(maths, one)], set[str]()
+        if any(map(self._lacks, todo)):
+            return False
+        while todo:  # each signal once
+            one = todo.pop()
+            if one in seen or one not in SIGNALS or one in self.resolver.states:
+                continue
+            seen.add(one)
+            writers = self.resolver.writers.get(one, [])
+            if any(writer is effect for writer, _ in writers):
+                return False
+            todo += [*self._defaults(one), *(n for writer, key in writers for n in writer.functions[key].reads)]
+        return True
+
+    def _defaults(self, name: str) -> list[str]:
+        return names_in(default_of(SIGNALS[name], self.resolver.measured))
 
     def _argument(self, name: str, effect: type[Effect], function: str) -> str:
         """Variable of an argument; for a signal that the function rewrites, its value after the rewrites before."""
@@ -142,4 +200,4 @@ class FlowWriter:
         """Write the once-per-step function of an effect, assigning its states."""
         self._call(effect, "advance")
         for name in effect.functions["advance"].writes:
-            self.lines.append(f"{name} = {effect.name}__{name}")
+            self.written.append(Line(f"{name} = {effect.name}__{name}", effect if fades(effect) else None))

@@ -22,8 +22,15 @@ def _as_it_is(function: Any) -> Any:
 
 if PURE_PYTHON:
     inline: Any = _as_it_is
+    block: Any = _as_it_is
     entry: Any = _as_it_is
     power_of_two, exponent, mantissa = maths.power_of_two, maths.exponent, maths.mantissa
+
+    def get(cells: Any, first: int, i: int) -> Any:
+        return cells[first + i]
+
+    def put(cells: Any, first: int, i: int, value: float) -> None:
+        cells[first + i] = value
 else:
     try:
         import numba
@@ -40,6 +47,7 @@ else:
     # saves a third of the time to compile.
     njit: Any = numba.njit  # its stubs do not know all its options
     inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    block = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # called, not copied
     entry = njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
 
     # LLVM gives up merging the memory checks of a loop after 100 comparisons; with forty effects, loops over lanes
@@ -89,6 +97,26 @@ else:
     def _build_mantissa(builder: Any, x: Any) -> Any:
         bits = builder.and_(builder.bitcast(x, _I64), ir.Constant(_I64, _MANTISSA_BITS))
         return builder.bitcast(builder.or_(bits, ir.Constant(_I64, _EXPONENT_ONE)), _F64)
+
+    # Entry i of a row that begins at `first` in a one-dimensional array: an index takes ten times as long to compile.
+    @intrinsic
+    def get(_context: Any, cells: Any, _first: Any, _i: Any) -> Any:
+        def build(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.load(_entry(context, builder, signature, arguments))
+
+        return numba.float64(cells, numba.int64, numba.int64), build
+
+    @intrinsic
+    def put(_context: Any, cells: Any, _first: Any, _i: Any, _value: Any) -> Any:
+        def build(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            builder.store(arguments[3], _entry(context, builder, signature, arguments))
+            return context.get_dummy_value()
+
+        return numba.void(cells, numba.int64, numba.int64, numba.float64), build
+
+    def _entry(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        cells = context.make_array(signature.args[0])(context, builder, arguments[0])
+        return builder.gep(cells.data, [builder.add(arguments[1], arguments[2])])
 
     power_of_two = _real_function(_build_power_of_two)
     exponent = _real_function(_build_exponent)

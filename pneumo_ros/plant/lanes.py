@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pneumo_ros.errors import UsageError
+from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.reach import fades
 
 if TYPE_CHECKING:
     from concurrent.futures import ThreadPoolExecutor
@@ -90,6 +92,18 @@ def fitting(
     return given.reshape(-1, *given.shape[-2:]), np.array(np.broadcast_to(tail, (*lanes, others)), order="C"), q
 
 
+def acting_in(effects: Sequence[type[Effect]], parameters: Array) -> NDArray[np.bool_]:
+    """In which lanes each effect that fades acts (lanes, effects), by the parameters (lanes, parameters) of all."""
+    found, first = list[NDArray[np.bool_]](), 0
+    for effect in effects:
+        own = [(first + k, p.neutral) for k, p in enumerate(effect.parameters.values()) if p.neutral is not None]
+        first += len(effect.parameters)
+        if fades(effect):
+            columns, neutral = zip(*own, strict=True)
+            found.append(np.any(parameters[:, columns] != np.array(neutral), axis=1))
+    return np.asarray(np.array(found).reshape(len(found), len(parameters)).T, dtype=bool)
+
+
 def follow_one(
     kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
     start: float, h: float, stride: int, parts: int,
@@ -107,26 +121,28 @@ def follow_one(
 
 
 def follow_lanes(
-    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
+    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array, acting: NDArray[np.bool_],
     kept: NDArray[np.int64], wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Run `kernel.follow_lanes` over all lanes, on `threads` threads; returns the kept states, wanted derivatives.
 
-    measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); kept, wanted: indices
-    of states; `start` [s]: time of the first sample. Both results are (lanes, samples, indices); row 0 of the
-    derivatives repeats row 1. One or two lanes beyond the last whole block are run by `kernel.follow`, to the same bit.
+    measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); acting (lanes,
+    effects): by `acting_in`, or all True; kept, wanted: indices of states; `start` [s]: time of the first sample. Both
+    results are (lanes, samples, indices); row 0 of the derivatives repeats row 1. One or two lanes beyond the last
+    whole block, in which all effects act, are run by `kernel.follow`, to the same bit.
     """
     count, samples, width = len(parameters), measured.shape[1], kernel.LANES
     X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
     alone = count % width if count % width <= ALONE else 0
+    alone = alone if acting[count - alone :].all() else 0
     together = count - alone
+    some = np.array([acting[k : k + width].any(axis=0) for k in range(0, together, width)])
 
     def part(blocks: slice) -> None:
         which = slice(blocks.start * width, min(blocks.stop * width, together))
-        given = measured if len(measured) == 1 else measured[which]
-        kernel.follow_lanes(
-            given, parameters[which], rest[which], inputs, start, h, stride, parts, kept, X[which], wanted, out[which]
-        )
+        given, q = measured if len(measured) == 1 else measured[which], parameters[which]
+        how = start, h, stride, parts
+        kernel.follow_lanes(given, q, rest[which], inputs, some[blocks], *how, kept, X[which], wanted, out[which])
 
     if together:
         _share(part, -(-together // width), threads)

@@ -30,6 +30,12 @@ def reads_drive(effect: type[Effect]) -> bool:
     return any(name in ("drive", DRIVE) for reads, _ in _functions(effect) for name in reads)
 
 
+def fades(effect: type[Effect]) -> bool:
+    """Whether an effect adds nothing at the neutral values of its parameters: not one that drives the machine."""
+    drives = any(name in ("drive", "duty") for _, writes in _functions(effect) for name in writes)
+    return not drives and any(one.neutral is not None for one in effect.parameters.values())
+
+
 def owners_read(effect: type[Effect]) -> tuple[str, ...]:
     """Names of the other effects whose parameters an effect reads, as owner__key, sorted."""
     reads = {name for function in effect.functions.values() for name in function.reads}

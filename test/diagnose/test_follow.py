@@ -8,6 +8,7 @@ from pneumo_ros.plant import Model
 
 SENSORS = ("position_sensor_delay", "pressure_sensor_offset")
 MODEL, _, RUN = own("steps", seconds=3.0)
+EVERY = np.arange(len(RUN))
 LATE = MODEL.with_effects([*MODEL.effects, *SENSORS])
 
 
@@ -21,7 +22,7 @@ def variants(model: Model) -> np.ndarray:
 
 
 def driven(rows: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    return {v.index: (v.states, v.claimed) for v in follow_each(LATE, frame_of(RUN, LATE.chambers), rows)}
+    return {v.index: (v.states(EVERY), v.claimed) for v in follow_each(LATE, frame_of(RUN, LATE.chambers), rows)}
 
 
 def test_variants_with_the_same_sensors_are_one_group() -> None:

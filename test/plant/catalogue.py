@@ -172,12 +172,22 @@ def driven_in_one_kernel(name: str) -> Model:
     return everything().with_parameters({**others, **bristle, **LONG, **own})
 
 
+_CELLS = """
+def get(cells, first, i):
+    return cells[first + i]
+
+def put(cells, first, i, value):
+    cells[first + i] = value
+
+"""
+
+
 @cache
 def _interpreted(text: str) -> ModuleType:
     compiled = "from pneumo_ros.plant.jit import"
     assert compiled in text
     module = ModuleType("interpreted_kernel")
-    plain = "entry = inline = lambda function: function\nfrom pneumo_ros.plant.maths import"
+    plain = f"{_CELLS}entry = inline = block = lambda function: function\nfrom pneumo_ros.plant.maths import"
     names = "exponent, mantissa, power_of_two"
     head, _, tail = text.partition(compiled)
     exec(f"{head}{plain} {names}\n{tail.partition(chr(10))[2]}", vars(module))

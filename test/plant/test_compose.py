@@ -54,7 +54,7 @@ def test_an_effect_that_rewrites_one_signal_and_adds_to_another_runs_once(tmp_pa
     body = one("stribeck", "stribeck = 0.5 * stribeck", "force = 8.0 * stribeck", "return stribeck, force")
     model = composed(tmp_path, body, "own")
     assert seen(model, "force") == pytest.approx(11.0 + 4.0)
-    assert model.composition.text.count("own__equations(") == 3  # definition, derivatives, observation
+    assert model.composition.text.count("own__equations(") == 4  # definition, derivatives, observation, of a block
 
 
 def test_defaults_replace_missing_effects() -> None:

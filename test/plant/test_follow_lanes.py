@@ -84,6 +84,23 @@ def test_plain_python_follows_to_the_same_bits() -> None:
         assert_alone(compiled, lane, (plain[0][lane], plain[1][lane]))
 
 
+def test_effects_that_a_block_lacks_are_passed_over() -> None:
+    """Signals that they would change stand as without them; their own states stay where they begin."""
+    effects = ("friction_lag", "line_delay", "valve_hysteresis", "spring_load")
+    neutral = {"friction_lag.time_constant": 0.0, "line_delay.delay": 0.0, "valve_hysteresis.half_width": 0.0}
+    model = AXIS.with_effects([*AXIS.effects, *effects], neutral | {"spring_load.stiffness": 0.0})
+    loaded = model.with_parameters({"friction_lag.time_constant": 5e-3, "spring_load.stiffness": 100.0})
+    given = (motion(), VOLTAGE, model.state()[4:])
+    for lanes, moving in (([model], {"z"}), ([model, loaded], {"z", "v_f"})):
+        passed = model.follow_lanes(*given, values(lanes), **HOW, columns=("v", "p_a", "p_b"), passing=True)
+        usual = model.follow_lanes(*given, values(lanes), **HOW, columns=("v", "p_a", "p_b"))
+        np.testing.assert_allclose(passed[1], usual[1], rtol=1e-9, atol=1e-9 * np.abs(usual[1]).max())
+        moved = {name for k, name in enumerate(model.states[4:], 4) if np.ptp(passed[0][:, :, k]) > 0.0}
+        assert moved == moving
+        assert np.ptp(usual[0][:, :, model.states.index("line_a_1")]) > 0.0, "it moves where it is not passed over"
+    assert np.abs(passed[1][1] - passed[1][0]).max() > 1.0, "the spring acts"
+
+
 def test_only_what_is_asked_for_is_returned_in_that_order() -> None:
     given = (motion(), VOLTAGE, [0.0], values(varied(AXIS, 5)))
     states, slopes = AXIS.follow_lanes(*given, **HOW)

@@ -4,10 +4,11 @@ import re
 
 import numpy as np
 import pytest
-from plant.catalogue import AXIS, CATALOGUE, everything, in_python, neutral_values
+from plant.catalogue import AXIS, CATALOGUE, driven_in_one_kernel, everything, in_python, neutral_values
 from plant.checks import own_values
 
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.reach import fades
 
 VOLTAGE = np.repeat([4.0, -3.0, 0.0, 6.0, -8.0, 1.2], 60)
 
@@ -73,6 +74,18 @@ def test_lanes_of_all_effects_follow_a_motion_as_each_would_alone() -> None:
         assert (states[i].tobytes(), slopes[i].tobytes()) == (alone[0].tobytes(), alone[1].tobytes())
     plain = in_python(model).follow_lanes(measured[:4], VOLTAGE[:6], rest, q[:2], step=5e-4, parts=2)
     assert (plain[0].tobytes(), plain[1].tobytes()) == (states[:2, :4].tobytes(), slopes[:2, :4].tobytes())
+
+
+@pytest.mark.check
+@pytest.mark.parametrize("name", [effect.name for effect in CATALOGUE if fades(effect)])
+def test_an_effect_acts_alike_where_all_others_are_passed_over(name: str) -> None:
+    """The derivatives of what is measured, along one motion."""
+    measured = AXIS.simulate(VOLTAGE, AXIS.state(y=-0.5, p_a=3e5, p_b=4e5), parts=2)[:, :4]
+    lane, given = driven_in_one_kernel(name), (VOLTAGE, starts(1)[0, 4:])
+    how = {"step": 5e-4, "parts": 2, "columns": ("v", "p_a", "p_b")}
+    passed, usual = (lane.follow_lanes(measured, *given, lane.values[None], **how, passing=p)[1] for p in (True, False))
+    scale = np.abs(usual).max(axis=(0, 1))
+    assert np.abs(passed - usual).max(axis=(0, 1)) / scale == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.check
