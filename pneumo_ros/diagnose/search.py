@@ -162,7 +162,9 @@ class Search:
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
         """The refitted model with an effect added, without the effects whose size vanishes, and their names."""
         new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
-        new = self.polish(self.fitter.simplest(new, candidate.name, self.horizon))
+        for name in self.fitter.added(new):  # beside the new effect, older ones may explain as much by less
+            new = self.fitter.simplest(new, name, self.horizon)
+        new = self.polish(new)
         std = self.fitter.deviations(new)
         older = [n for n in self.fitter.added(new) if n != candidate.name and undetermined(new, n, std)]
         small = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL and n not in self.paying]
