@@ -1,6 +1,7 @@
 """Model against measurement: prediction errors per run and signal, residuals per equation, and where they occur."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -24,6 +25,8 @@ from pneumo_ros.units import LINE
 __all__ = ["Comparison", "EquationVerdict", "RunComparison", "SignalError", "compare", "compare_run", "judge_equations"]
 
 Array = NDArray[np.float64]
+
+THREADS = 2  # runs compared side by side
 
 
 @dataclass(frozen=True)
@@ -90,10 +93,12 @@ def compare(
     """
     results = []
     horizon = (fitting_horizon(runs) if runs else HORIZON) if horizon is None else horizon
-    for i, run in enumerate(runs):
-        if progress:
-            progress(i / len(runs), run.name)
-        results.append(compare_run(model, run, horizon))
+    with ThreadPoolExecutor(THREADS) as pool:
+        made = pool.map(lambda run: compare_run(model, run, horizon), runs)
+        for i, run in enumerate(runs):
+            if progress:
+                progress(i / len(runs), run.name)
+            results.append(next(made))
     names = results[0].located if results else {}
     motions = [r.motion for r in results]
     return Comparison(

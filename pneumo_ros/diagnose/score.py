@@ -15,7 +15,7 @@ equation seen through windows of two widths counts half by each.
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ SIZES = (0.0, *(0.5 * 2.0**k for k in range(12)))  # of the discrepancy, over th
 TIMES = (0.03, 0.2, 1.0, 5.0)  # s: its correlation time
 NOISE = tuple(0.9 + 0.005 * k for k in range(41))  # of the stated noise
 STEPS, SHARE, LITTLE = 3, 0.3, 0.5  # of base parameters: most steps, share tried of a poor one, least gain to go on
+USUAL = 0.0, 0.0, 1.0  # size and correlation time of the discrepancy, and scale of the noise, where nothing is known
 EXACT = 4  # parabolas, each closer to the largest value
 FINE, REACH = 0.01, 4.0  # of the scale of the noise: a step of parabolas; and how many of them at a time
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
@@ -82,12 +83,13 @@ class Scoring:
     def __init__(self, train: Evidence, held: Evidence) -> None:
         self.parts = (train, held)
         self.names = tuple(dict.fromkeys([*train.names, *held.names]))
-        self.scales = dict[str, float]()  # of the noise, by family; found for each model where there is none
+        # Size and correlation time of the discrepancy and scale of the noise, by family; empty: each model has its own.
+        self.usual = dict[str, tuple[float, float, float]]()
 
     def measure(self, model: Model, *residuals: Array) -> None:
         """Take the scale of the sensors' noise from what `model` leaves: it is the same for models compared to it."""
-        self.scales = {}
-        self.scales = {family.name: family.scale for family in self._families(model, residuals)}
+        self.usual = {}
+        self.usual = {family.name: family.best for family in self._families(model, residuals)}
 
     def evidence(self, model: Model, *residuals: Array) -> Array:
         """Log evidence (parts,) of the residuals over noise that `model` leaves in training, and in held-out runs.
@@ -100,7 +102,7 @@ class Scoring:
         """The families of the training runs' residuals, or of those and the held-out runs'."""
         parts = self.parts[: len(residuals)]
         levels = [part.noise_of(model) for part in parts]
-        return [_Family(name, parts, residuals, levels, self.scales.get(name)) for name in self.names]
+        return [_Family(name, parts, residuals, levels, self.usual.get(name)) for name in self.names]
 
     def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit], threads: int = 1) -> Best:
         """The log evidence of a fit, its base parameters moved to where that of all runs is largest.
@@ -152,9 +154,9 @@ class _Family:
         parts: Sequence[Evidence],
         residuals: Sequence[Array],
         levels: Sequence[Array],
-        usual: float | None,
+        usual: tuple[float, float, float] | None,
     ) -> None:
-        self.name, self.usual, self.known = name, usual or 1.0, AMPLIFIED if usual else STATED
+        self.name, self.usual, self.known = name, usual or USUAL, AMPLIFIED if usual else STATED
         self.single = name == "breakaway"  # without correlation
         self.weight = 1.0 if self.single else 0.25
         self.series: list[list[tuple[Array, ...]]] = []
@@ -174,20 +176,20 @@ class _Family:
         """Log evidence (parts,) at the discrepancy and the noise of the greatest likelihood."""
         if not self.median:
             return np.zeros(len(self.series))
-        best = self._best()
+        best = self.best
         found: Array = self._likelihood(*best)[1].copy()
         found[0] -= self._strain(best[2])
         return found
 
-    @property
-    def scale(self) -> float:
-        """Of the noise, at the greatest likelihood."""
-        return self._best()[2] if self.median else 1.0
+    @cached_property
+    def best(self) -> tuple[float, float, float]:
+        """Size and correlation time of the discrepancy, and scale of the noise, of the greatest likelihood."""
+        return self._best() if self.median else USUAL
 
     def normal(self, part: int, slopes: Array) -> tuple[Array, Array]:
         """Normal matrix and gradient of base parameters by their `slopes` (residuals, free) in a part of the runs."""
         matrix, gradient = np.zeros((slopes.shape[1], slopes.shape[1])), np.zeros(slopes.shape[1])
-        at = self._best() if self.median else (0.0, 0.0, 1.0)
+        at = self.best
         for rows, (residual, level, noise, seconds, run) in zip(self.rows[part], self.series[part], strict=True):
             both = np.column_stack([residual, slopes[rows] * noise[:, None]])
             _whiten(both, at[2] * level, seconds, run, at[0] * self.median, at[1], TAIL)
@@ -196,15 +198,17 @@ class _Family:
         return matrix, gradient
 
     def _best(self) -> tuple[float, float, float]:
-        """Size and correlation time of the discrepancy, and scale of the noise, of the greatest likelihood."""
         times, scales = ((0.0,), (BREAKAWAY_NOISE,)) if self.single else (TIMES, NOISE)
-        best = 0.0, times[0], scales[len(scales) // 2]
+        (size, time, near), scale = self.usual, scales[len(scales) // 2]
         for _ in range(ROUNDS):
-            scale = best[2]
-            tried = [(_peak(SIZES, partial(self._whole, time=time, scale=scale)), time, scale) for time in times]
+            tried = []
+            for time in times:
+                size = _peak(SIZES, partial(self._whole, time=time, scale=scale), size)
+                tried.append((size, time, scale))
             size, time, _ = max(tried, key=lambda at: self._whole(*at))
-            times, best = (time,), (size, time, _peak(scales, partial(self._whole, size, time)))
-        return best if self.single else self._exact(*best)
+            times, scale = (time,), _peak(scales, partial(self._whole, size, time), near)
+            near = scale
+        return (size, time, scale) if self.single else self._exact(size, time, scale)
 
     def _exact(self, size: float, time: float, scale: float) -> tuple[float, float, float]:
         """Size of the discrepancy and scale of the noise of the greatest likelihood, between the steps of the options.
@@ -225,7 +229,7 @@ class _Family:
 
     def _strain(self, scale: float) -> float:
         """Nats by which a scale of the noise is less probable than the usual one."""
-        return 0.0 if self.single else 0.5 * ((scale / self.usual - 1.0) / self.known) ** 2
+        return 0.0 if self.single else 0.5 * ((scale / self.usual[2] - 1.0) / self.known) ** 2
 
     def _likelihood(self, size: float, time: float, scale: float) -> tuple[Array, Array]:
         """Log likelihood (parts,) of training and held-out runs; and the same without what noise alone costs."""
@@ -245,18 +249,16 @@ def _evidence(families: Sequence[_Family]) -> Array:
     return np.asarray(np.sum([family.evidence() for family in families], axis=0))
 
 
-def _peak(options: Sequence[float], value: Callable[[float], float]) -> float:
-    """The option of the largest value, which rises up to it and falls beyond."""
-    low, high = 0, len(options) - 1
-    for _ in options:
-        if high - low < 3:
+def _peak(options: Sequence[float], value: Callable[[float], float], near: float) -> float:
+    """The option of the largest value, which rises up to it and falls beyond; sought from the option next to `near`."""
+    at = int(np.argmin(np.abs(np.array(options) - near)))
+    for way in (1, -1):
+        begin = at
+        while 0 <= at + way < len(options) and value(options[at + way]) > value(options[at]):
+            at += way
+        if at != begin:
             break
-        third = (high - low) // 3
-        if value(options[low + third]) < value(options[high - third]):
-            low += third + 1
-        else:
-            high -= third
-    return max(options[low : high + 1], key=value)
+    return options[at]
 
 
 def _top(value: Callable[[Array], float], count: int) -> Array:
