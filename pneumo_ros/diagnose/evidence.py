@@ -85,32 +85,25 @@ class Evidence:
         rigid = without_states(model)
         grown = ((self.piston + moving_mass(rigid) - rigid["piston.mass"]) / self.mass) ** 2
         noise = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
-        return np.asarray(noise * self.amplification(model)[self.family])
+        return np.asarray(noise * self.amplification(model)[self.run, self.family])
 
     def _amplification(self, model: Model) -> Array:
-        """Factor (families,) by which the states of effects in `model` amplify the sensors' noise.
+        """Factor (runs, families) by which the states of effects in `model` amplify the sensors' noise in each run.
 
-        Measured on the longest run, to which its noise is added once more; breakaways are no windows.
+        Measured on the run, to which its noise is added once more: a load behind a play follows the rod in one run
+        and not in another. Breakaways are no windows.
         """
         plain = without_states(model)
         if plain is model:
-            return np.ones(len(self.names))
-        grown, usual = self.change(model, np.stack([model.values, plain.values]))
-        ratio = grown / np.maximum(usual, 1e-300)
-        known = [name != "breakaway" and before > 0.0 for name, before in zip(self.names, usual, strict=True)]
-        return np.where(known, ratio, 1.0)
-
-    def change(self, model: Model, parameters: Array) -> Array:
-        """Root mean square (variants, families) of the change of residuals [noise] where noise is added once more.
-
-        parameters (variants, parameters) of `model`.
-        """
-        part = max(self.by_run, key=lambda one: len(one.run))
-        own = self.run == part.families[0].run
-        first, second = (part.values(model, parameters, frame=frame) for frame in (part.frame, part.noisier))
-        squares, family = ((second - first) / self.noise[own]) ** 2, self.family[own]
-        count = np.maximum(np.bincount(family, minlength=len(self.names)), 1)
-        return np.sqrt([np.bincount(family, square, len(self.names)) / count for square in squares])
+            return np.ones((len(self.by_run), len(self.names)))
+        both = np.stack([model.values, plain.values])
+        changes = _pool(os.getpid(), 2).map(lambda part: part.change(model, both), self.by_run)
+        grown, usual = (np.zeros((len(self.by_run), len(self.names))) for _ in both)
+        for run, change in enumerate(changes):
+            for name, squares in change.items():
+                grown[run, self.names.index(name)], usual[run, self.names.index(name)] = squares
+        known = (usual > 0.0) & (np.array(self.names) != "breakaway")
+        return np.sqrt(np.where(known, grown, 1.0) / np.where(known, usual, 1.0))
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""
@@ -216,6 +209,17 @@ class RunEvidence:
             ]
             result[variant.index] = np.concatenate(parts)
         return result
+
+    def change(self, model: Model, parameters: Array) -> dict[str, Array]:
+        """By family, the mean square (variants,) of the change of its residuals where noise is added once more.
+
+        parameters (variants, parameters) of `model`.
+        """
+        first, second = (self.values(model, parameters, frame=frame) for frame in (self.frame, self.noisier))
+        ends = np.cumsum([int(family.usable.sum()) for family in self.families])[:-1]
+        squares = np.split((second - first) ** 2, ends, axis=1)
+        own = {f.name: each for f, each in zip(self.families, squares, strict=True) if each.shape[1]}
+        return {name: each.mean(axis=1) for name, each in own.items()}
 
     def _measured(self, model: Model, family: Family, states: Array) -> Measured:
         """The part of an equation's residual that depends on the frame's states alone."""
