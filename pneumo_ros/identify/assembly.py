@@ -92,7 +92,8 @@ class Assembly:
         """Bristle stiffness and damping."""
         fit = fit_presliding(self.model, runs, breakaways)
         for name, value in fit.values.items():
-            self.note(name, value, fit.intervals.get(name), fit.remarks[name])
+            if name not in self.start.exact:
+                self.note(name, value, fit.intervals.get(name), fit.remarks[name])
 
     def motion(
         self, runs: Sequence[Run], breakaways: Sequence[Breakaway], progress: Callable[[float, str], None]

@@ -18,7 +18,7 @@ from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.assembly import ADDED, COULOMB, DRAG, STATIC, STRIBECK, Assembly, Found
 from pneumo_ros.identify.by_motion import fit_by_motion, needs_motion
-from pneumo_ros.identify.flow import coefficients
+from pneumo_ros.identify.flow import fitted_flow
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
 from pneumo_ros.identify.steady import TRAVEL, Window, find_windows
@@ -57,9 +57,10 @@ def identify(
 ) -> Identification:
     """Identify friction, and where there is a valve its flow coefficients, from constant-voltage runs.
 
-    `free` are the friction parameters to fit; those the model does not have are ignored. Runs may differ in sample
-    time. Without one steady stretch all is fitted by the motion. Raises UsageError for a model without LuGre friction,
-    DataError when the runs hold too few steady stretches or no motion, or leave the stroke.
+    `free` are the friction parameters to fit; those the model does not have are ignored, and those that its machine
+    file states to be known exactly. Runs may differ in sample time. Without one steady stretch all is fitted by the
+    motion. Raises UsageError for a model without LuGre friction, or with all of `free` known exactly, DataError when
+    the runs hold too few steady stretches or no motion, or leave the stroke.
     """
     tell = progress or (lambda share, text: None)
     tell(0.0, "looking for steady stretches")
@@ -73,7 +74,12 @@ def identify(
         return replace(_by_motion(model, runs, why, free, tell), windows=windows)
     breakaways = tuple(b for run in runs for b in find_breakaways(model, run))
     tell(0.2, f"{len(points)} steady points, {len(breakaways)} breakaways")
-    wanted = tuple(name for name in free if name in model.parameters)
+    wanted = tuple(name for name in free if name in model.parameters and name not in model.exact)
+    if not wanted:
+        raise UsageError(
+            f"no friction parameter of {model.name} is to be identified: its machine file states that "
+            f"{', '.join(name for name in free if name in model.exact)} are known exactly; give one a deviation above 0"
+        )
     result = Assembly(model, wanted, fit_map(model, points, breakaways, wanted))
     if not model.force_driven:
         result.flow(windows)
@@ -81,7 +87,7 @@ def identify(
     tell(0.4, "fitting the motion after breakaways")
     result.motion(runs, breakaways, lambda share, text: tell(0.4 + 0.6 * share, text))
     result.map_again(points, breakaways)
-    asked = (*wanted, *coefficients(model))
+    asked = (*wanted, *fitted_flow(model))
     unknown = {name: result.unknown[name] for name in asked if name in result.unknown}
     return Identification(
         model, result.model, result.found, unknown, result.correlations, windows, points, breakaways, result.map_fit

@@ -46,6 +46,11 @@ def coefficients(model: Model) -> tuple[str, ...]:
     return tuple(name for name in COEFFICIENTS if name in model.parameters)
 
 
+def fitted_flow(model: Model) -> tuple[str, ...]:
+    """Those of `coefficients` that are fitted: the machine file does not state them to be known exactly."""
+    return tuple(name for name in coefficients(model) if name not in model.exact)
+
+
 def measured_flow(model: Model, window: Window) -> tuple[float, ...]:
     """Mass flow into each chamber [kg/s]: (p V' + V p' / gamma) / (R T), Eqs. 3-4 solved for q."""
     gamma, r_t = model["air.heat_capacity_ratio"], model["air.gas_constant"] * model["air.temperature"]
@@ -74,11 +79,12 @@ def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
 
     Needs the effects dead_zone and arctan_flow; without them, or with too few windows, everything is undetermined.
     """
-    names = (*coefficients(model), *(name for name in (*LIMITS, *PATHS) if name in model.parameters))
+    further = [name for name in (*LIMITS, *PATHS) if name in model.parameters and name not in model.exact]
+    names = (*fitted_flow(model), *further)
     used = [w for w in windows if w.used and w.velocity * w.input > 0.0]
-    if "arctan_flow" not in model.effects or len(used) < 2 * len(names):
+    if "arctan_flow" not in model.effects or not names or len(used) < 2 * len(names):
         text = f"{len(used)} steady stretches with an open valve are too few"
-        unknown = dict.fromkeys(coefficients(model), text)
+        unknown = dict.fromkeys(fitted_flow(model), text)
         return FlowFit({}, {}, unknown, np.empty((0, 0)), ())
     problem = _FlowProblem(model, used, names)
     x = least_squares(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.breakaway import Breakaway
-from pneumo_ros.identify.flow import LIMITS, coefficients
+from pneumo_ros.identify.flow import LIMITS, fitted_flow
 from pneumo_ros.identify.friction_map import LOOSE
 from pneumo_ros.identify.presliding import STIFFNESS
 from pneumo_ros.plant import Model
@@ -52,9 +52,8 @@ def fit_motion(
     count = sum(len(s) for s in starts)
     if not free or count < FEWEST_BREAKAWAYS:
         return None
-    beside = [
-        name for name in (*coefficients(model), *LIMITS, STIFFNESS) if name in model.parameters and name not in free
-    ]
+    others = [name for name in (*LIMITS, STIFFNESS) if name in model.parameters and name not in model.exact]
+    beside = [name for name in (*fitted_flow(model), *others) if name not in free]
     wide = {name: (_SURE if name in sure else _KNOWN) * abs(model[name]) for name in beside} | dict(free)
     segments = cut_at(model, chosen, starts, round((BEFORE_BREAKAWAY + AFTER_BREAKAWAY) / chosen[0].sample_time))
     fit = refit_segments(model, segments, [*free, *beside], wide, progress=progress)

@@ -94,6 +94,11 @@ class Model:
         return tuple(e.name for e in self.composition.effects if not is_part(e))
 
     @property
+    def exact(self) -> frozenset[str]:
+        """Parameters that the machine file states to be known exactly: no fit moves them."""
+        return frozenset(name for name, deviation in self.uncertainty.items() if deviation == 0.0)
+
+    @property
     def coordinate(self) -> str:
         """Whether it moves along a line, "translation", or turns, "rotation": in rad, N m and kg m2."""
         return self.library.coordinate
@@ -208,9 +213,10 @@ class Model:
     def with_uncertainty(self, known: Mapping[str, float]) -> "Model":
         """The same machine, with `known` as the standard deviations of its parameters, by dotted name, in their units.
 
-        Raises UsageError, with the nearest names, for unknown parameters, and for what is no deviation above 0.
+        What is known exactly stays so where `known` does not name it. Raises UsageError, with the nearest names, for
+        unknown parameters, and for what is no deviation.
         """
-        stated = deviations(self.composition, self.parameters, known)
+        stated = deviations(self.composition, self.parameters, {**dict.fromkeys(self.exact, 0.0), **known})
         return Model(self.composition, self.parameters, self.name, self.library, stated)
 
     def with_effects(self, effects: Iterable[str], values: Mapping[str, object] | None = None) -> "Model":

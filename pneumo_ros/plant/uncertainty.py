@@ -4,8 +4,9 @@
       lugre_friction:
         coulomb_friction: 12.0   # in the parameter's unit
         static_friction: 40 %    # of its value
+        bristle_stiffness: 0     # known exactly
 
-A fit takes them as the widths of its priors, and what is uncertain as free.
+A fit takes them as the widths of its priors, and what is uncertain as free. No fit moves what is known exactly.
 """
 
 import math
@@ -39,7 +40,7 @@ def _flat(given: Mapping[Any, Any]) -> Iterator[tuple[str, object]]:
 def deviations(composition: Composition, values: Mapping[str, float], given: Mapping[str, object]) -> dict[str, float]:
     """Standard deviations in the parameters' units, from numbers, or from texts such as "20 %" of the value.
 
-    Raises UsageError, with the nearest names, for unknown parameters, and for what is no deviation above 0.
+    Raises UsageError, with the nearest names, for unknown parameters, and for a negative or infinite deviation.
     """
     return {name: _deviation(composition, values, name, value) for name, value in given.items()}
 
@@ -53,11 +54,12 @@ def _deviation(composition: Composition, values: Mapping[str, float], name: str,
         number = float(text) * (abs(values[name]) / 100.0 if share else 1.0)
     except (ValueError, OverflowError):
         number = math.nan
-    if not (math.isfinite(number) and number > 0.0):
-        of_zero = f"; a share of {name} = 0 says nothing" if share and values[name] == 0.0 else ""
+    of_zero = share and values[name] == 0.0
+    if of_zero or not (math.isfinite(number) and number >= 0.0):
+        why = f"; a share of {name} = 0 says nothing" if of_zero else ""
         raise UsageError(
-            f"the uncertainty of {name} is {brief(given)}; it takes a standard deviation above 0, as a number "
-            f"in {unit} or as a share such as 20 %{of_zero}"
+            f"the uncertainty of {name} is {brief(given)}; it takes a standard deviation, as a number "
+            f"in {unit} or as a share such as 20 %, or 0 for a value that is known exactly{why}"
         )
     return number
 

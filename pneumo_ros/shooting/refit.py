@@ -38,16 +38,16 @@ def default_free(model: Model) -> tuple[str, ...]:
     """Free parameters of a refit: all but mass, geometry, gas, end stops and parameters only presliding shows.
 
     What whoever built the machine chose is not free either, nor what does nothing in the form that an effect has. What
-    the machine file states to be uncertain is free, too.
+    the machine file states to be uncertain is free, too, and nothing is free that it states to be known exactly.
     """
     idle = {f"{one.name}.{key}" for one in model.composition.effects for key in one.idle(_values(model, one))}
     fitted = [name for name in model.effects if name not in FIXED_EFFECTS]
-    return tuple(
-        name
-        for name in model.parameters
-        if name in model.uncertainty
-        or (name.partition(".")[0] in fitted and name not in (*FIXED, *idle) and not model.specification(name).chosen)
-    )
+
+    def usually(name: str) -> bool:
+        chosen = model.specification(name).chosen
+        return name.partition(".")[0] in fitted and name not in (*FIXED, *idle) and not chosen
+
+    return tuple(name for name in model.parameters if model.uncertainty.get(name, float(usually(name))) > 0.0)
 
 
 def _values(model: Model, effect: type[Effect]) -> dict[str, float]:
@@ -143,7 +143,8 @@ def unknowns_of(
     for name, width in zip(names, prior, strict=True):
         if not width > 0.0:
             unit = model.specification(name).unit
-            raise UsageError(f"the prior of {name} is {width:g} {unit}; a refit takes standard deviations above 0")
+            why = ", and the machine file states it to be known exactly" if name in model.exact else ""
+            raise UsageError(f"the prior of {name} is {width:g} {unit}; a refit takes standard deviations above 0{why}")
     specs = [model.specification(name) for name in names]
     begin = {n: known[n].before if n in known else model[n] for n in names}
     return Unknowns(

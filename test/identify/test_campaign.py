@@ -117,6 +117,26 @@ def test_one_run_determines_nothing_it_does_not_show() -> None:
     assert found.correlations == {}
 
 
+def exactly(model: Model, *names: str) -> Model:
+    """The model, some of its parameters true and stated to be known exactly."""
+    return model.with_parameters({n: truth()[n] for n in names}).with_uncertainty(dict.fromkeys(names, 0.0))
+
+
+def test_what_is_known_exactly_is_kept() -> None:
+    known = (STATIC, COEFFICIENTS[0], LIMITS[0], STIFFNESS)
+    found = identify(exactly(wrong(), *known), constant_runs(0.83, 1.0, 7.0))
+    assert not set(known) & set(found.parameters)
+    assert {name: found.model[name] for name in known} == {name: truth()[name] for name in known}
+    off = errors(found, truth())
+    assert max(off[name] for name in (COULOMB, DRAG, COEFFICIENTS[1])) < 0.01
+
+
+def test_nothing_is_left_to_identify() -> None:
+    model = exactly(wrong(), *(name for name in FRICTION if name in wrong().parameters))
+    with pytest.raises(UsageError, match=r"that lugre_friction.static_friction, .* are known exactly; give one"):
+        identify(model, [constant_run(1.0)])
+
+
 def test_runs_may_differ_in_sample_time() -> None:
     runs = [constant_run(volts, sample_time=1e-3 if volts > 0.0 else 2e-3) for volts in VOLTAGES[:8]]
     off = errors(identify(wrong(), runs), truth())

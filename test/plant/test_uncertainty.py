@@ -13,7 +13,7 @@ from pneumo_ros.axis.simulator.machine import machine_from_parameters
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Library, load_model, model_from_dict, save_model
 from pneumo_ros.plant.machine_file import machine_text
-from pneumo_ros.shooting.refit import default_free, default_prior
+from pneumo_ros.shooting.refit import default_free, default_prior, unknowns_of
 
 COULOMB, STATIC = "lugre_friction.coulomb_friction", "lugre_friction.static_friction"
 VOLUME, GAIN = "chambers.volume_a", "arctan_flow.voltage_gain"
@@ -64,12 +64,29 @@ def test_what_is_uncertain_is_free_with_that_prior(tmp_path: Path) -> None:
     assert default_prior(model, GAIN) == default_prior(axis, GAIN) == 0.05 * axis[GAIN]
 
 
+def test_what_is_known_exactly_is_not_free_and_stays_so(tmp_path: Path) -> None:
+    text = "    uncertainty: {lugre_friction: {coulomb_friction: 0.0, static_friction: 40 %}}\n"
+    model = load_model(stated(tmp_path, text))
+    assert model.exact == {COULOMB}
+    assert set(default_free(load_model("axis"))) - set(default_free(model)) == {COULOMB}
+    assert load_model(save_model(model, tmp_path / "again.yaml")).exact == {COULOMB}
+    assert dict(model.with_uncertainty({STATIC: 3.0}).uncertainty) == {COULOMB: 0.0, STATIC: 3.0}
+    assert not model.with_uncertainty({COULOMB: 3.0}).exact
+
+
+def test_who_asks_for_a_fit_of_it_is_told_why_not(tmp_path: Path) -> None:
+    model = load_model(stated(tmp_path, "    uncertainty: {lugre_friction: {coulomb_friction: 0 %}}\n"))
+    with pytest.raises(UsageError, match=r"prior of lugre_friction.coulomb_friction is 0 N;.* to be known exactly"):
+        unknowns_of(model, (COULOMB,), {})
+    assert unknowns_of(model, (COULOMB,), {COULOMB: 2.0}).prior[0] == 2.0
+
+
 @pytest.mark.parametrize(
     ("section", "error"),
     [
         ("{lugre_friction: {coulom: 1.0}}", r"unknown parameter 'lugre_friction.coulom'; did you mean"),
-        ("{lugre_friction: {coulomb_friction: 0.0}}", r"is 0.0; it takes a standard deviation above 0.*in N or as a"),
-        ("{lugre_friction: {coulomb_friction: -5 %}}", r"uncertainty of lugre_friction.coulomb_friction is '-5 %'"),
+        ("{lugre_friction: {coulomb_friction: -1.0}}", r"is -1.0; it takes a standard deviation, .* in N or as a"),
+        ("{lugre_friction: {coulomb_friction: -5 %}}", r"coulomb_friction is '-5 %'.*or 0 for a value that is known"),
         ("{lugre_friction: {coulomb_friction: .inf}}", r"coulomb_friction is inf"),
         ("{lugre_friction: {coulomb_friction: [1]}}", r"coulomb_friction is \[1\]"),
         ("{lugre_friction: {coulomb_friction: true}}", r"coulomb_friction is True"),
