@@ -201,6 +201,12 @@ class Fitter:
         """Effects of `model` that the start lacks, without the parts that shape their laws."""
         return [name for name in model.effects if name not in self.start.effects and not model.library.find(name).part]
 
+    def as_given(self, model: Model) -> Model:
+        """The model with the values of the start; the effects that it lacks have their neutral sizes."""
+        own = [c for name in self.added(model) for c in coordinates(model.library.find(name))]
+        neutral = {c.name: c.neutral for c in own if c.neutral is not None}
+        return model.with_parameters(neutral | {n: self.start[n] for n in self.start.parameters})
+
     @cached_property
     def conditions(self) -> tuple[Array, Array]:
         """Conditions of the training and held-out residuals, relative to the mean and scatter of the training ones."""

@@ -5,7 +5,8 @@ late, which costs a hundred noise deviations.
 
 A machine in its position loop is fitted to whole recordings: the loop corrects what is predicted wrongly, so that
 errors stay bounded however long a segment is, and the free start of each short segment would take in what parameters
-explain. Whole recordings also show the bristles' stiffness. Valleys lie close: where a fit ends depends on its start.
+explain. Whole recordings also show the bristles' stiffness. Their valleys lie close, and most are far from the best, so
+a fit to segments of 1 s comes first: there is less for an error to add up over, and few valleys.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,7 +26,7 @@ Index = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 SEGMENTS = 80  # of all runs together: more take longer and change little
-LOOP = 10.0  # s, the longest segment of a machine in its position loop
+LOOP, FIRST = 10.0, 1.0  # s, the longest segment of a machine in its position loop, and of its first fit
 LEAD = 0.15  # s of a segment before its breakaway
 
 
@@ -45,20 +46,27 @@ def polish(
     deviations of parameters of `model`, which narrow their priors where they are smaller.
     """
     known, held = fitter.known(model, presliding=model.self_driven), sure or {}
-    samples = longest(runs) if model.self_driven else max(round(SEGMENT / runs[0].sample_time), 2)
-    segments = cut_at(model, runs, telling(model, runs, samples, most), samples)
     widths = dict(zip(known.names, known.prior.tolist(), strict=True))
     centre = dict(zip(known.names, known.centre.tolist(), strict=True))
     holding = {name: min(held.get(name, np.inf), width) for name, width in widths.items()}
-    found = refit_segments(model, segments, known.names, holding, threads=threads, progress=progress)
+
+    def fit(begin: Model, samples: int, most: int = most) -> Refit:
+        segments = cut_at(begin, runs, telling(begin, runs, samples, most), samples)
+        return refit_segments(begin, segments, known.names, holding, threads=threads, progress=progress)
+
+    if model.self_driven:
+        first, whole = longest(runs, FIRST), longest(runs)
+        found = fit(fit(model, first, SEGMENTS).model if first < whole else model, whole)
+    else:
+        found = fit(model, max(round(SEGMENT / runs[0].sample_time), 2))
     estimates = {n: replace(e, before=centre[n], prior=widths[n]) for n, e in found.estimates.items()}
     return replace(found, estimates=estimates)
 
 
-def longest(runs: Sequence[Run]) -> int:
-    """The most samples of a segment that every run holds between its gaps; at most those of `LOOP`, or of the usual."""
+def longest(runs: Sequence[Run], most: float = LOOP) -> int:
+    """The most samples of a segment that every run holds between its gaps; of at most `most` [s], or the usual."""
     step = runs[0].sample_time
-    samples = min(round(LOOP / step), *(len(run) - 1 for run in runs))
+    samples = min(round(most / step), *(len(run) - 1 for run in runs))
     while samples * step > 2.0 * SEGMENT and not all(len(side_by_side(run, samples)) for run in runs):
         samples //= 2
     return max(samples, 2)

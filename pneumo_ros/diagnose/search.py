@@ -16,7 +16,7 @@ from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
 from pneumo_ros.diagnose.judging import best_forms, freedom, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force, unexplained_force
-from pneumo_ros.diagnose.polishing import polish
+from pneumo_ros.diagnose.polishing import longest, polish
 from pneumo_ros.diagnose.prediction import (
     no_worse,
     pays,
@@ -186,7 +186,8 @@ class Search:
         names = [name for name in (STATIC, COULOMB) if name in new.parameters]
         values = physical(new, names, np.array([new[name] for name in names]))
         new = new.with_parameters(dict(zip(names, values.tolist(), strict=True)))
-        return new if not model.force_driven or self._predicts_training(new, model) else model
+        better = not model.force_driven or self._no_worse(new, model, self.train.runs, self.horizon)
+        return new if better else model
 
     def settled(self, model: Model, smaller: Model | None = None) -> Model:
         """The model refitted by prediction of segments, where nothing else determines the balance of forces.
@@ -194,24 +195,31 @@ class Search:
         That is on recordings with too few breakaways, and on force-driven axes, whose motion no pressures limit; and
         only where predictions of training and held-out runs get no worse. The refit starts at the values of a `smaller`
         model that was settled: from elsewhere it may end in a valley, and the larger model would seem to predict worse.
-        In a position loop it starts at its own values as well, and the better fit counts.
+        In a position loop, whose equations are biased, it starts at the values of the machine file as well, the better
+        fit counts, and it is judged as it was made, by whole recordings.
         """
         if self.imposed or (not model.force_driven and self.slips(model) is not None):
             return model
         self.progress(0.9, "refitting by prediction")
-        begins = [with_values_of(model, smaller) if smaller else model]
+        begins = [with_values_of(model, smaller)] if smaller else []
         if not model.self_driven:  # segments alone bias the parameters
-            sure = self.fitter.deviations(model)
+            begins, sure = begins or [model], self.fitter.deviations(model)
         else:  # the drive follows the measured position, whose errors bias the equations
-            begins, sure = [*begins, *([model] if smaller else ())], {}
+            begins, sure = [*begins, self.fitter.as_given(model)], {}
         fits = [polish(self.fitter, begin, self.train.runs, ENOUGH, sure=sure) for begin in begins]
         new = min(fits, key=lambda fit: fit.costs[-1]).model
-        better = self._predicts_training(new, model) and no_worse(self.predicted(model), self.predicted(new))
+        if model.self_driven:
+            runs = [*self.train.runs, *self.held.runs]
+            whole = longest(runs) * runs[0].sample_time
+            better = all(self._no_worse(new, model, some, whole) for some in (self.train.runs, self.held.runs))
+        else:
+            better = self._no_worse(new, model, self.train.runs, self.horizon)
+            better = better and no_worse(self.predicted(model), self.predicted(new))
         return new if better else model
 
-    def _predicts_training(self, new: Model, old: Model) -> bool:
-        """Whether one model predicts no signal of the training runs worse than another."""
-        return no_worse(*(windowed(one, self.train.runs, self.horizon) for one in (old, new)))
+    def _no_worse(self, new: Model, old: Model, runs: Sequence[Run], horizon: float) -> bool:
+        """Whether one model predicts no signal of the runs worse than another, in windows of `horizon` [s]."""
+        return no_worse(*(windowed(one, runs, horizon) for one in (old, new)))
 
     def slip_round(self, model: Model) -> tuple[Model, Step | None]:
         """The model with the effect that only breakaways and reversals show, if they need one, and the round.

@@ -3,20 +3,25 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from pneumo_ros.command.main import main
+from pneumo_ros.diagnose import polishing, search
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import missing
 from pneumo_ros.diagnose.polishing import longest, polish
+from pneumo_ros.diagnose.search import Search
 from pneumo_ros.errors import DataError
 from pneumo_ros.identify import by_motion
 from pneumo_ros.plant import Model, load_model, save_model
 from pneumo_ros.reading.read import read_run
 from pneumo_ros.records import read_recording, write_recording
 from pneumo_ros.runs.inputs import measured_inputs, measuring
+from pneumo_ros.shooting.estimates import Refit
+from pneumo_ros.shooting.segments import Segments
 
 N, DT, NOISE = 3000, 2e-3, 1e-4
 MOTOR = "dc_motor.force_per_volt"
@@ -101,13 +106,14 @@ def test_only_what_acts_on_the_servo_is_tried(folder: Path) -> None:
 def test_segments_of_a_loop_are_whole_recordings_or_what_gaps_leave(folder: Path) -> None:
     run = read_run(folder / "run_1", load_model(folder / "servo.yaml")).run
     assert longest([run, run]) == N - 1
+    assert longest([run, run], 1.0) * DT == pytest.approx(1.0)
     gap = replace(run, measured=np.abs(np.arange(N) - 1000) > 2)
     assert longest([run, gap]) == (N - 1) // 2
     assert longest([replace(run, measured=np.zeros(N, dtype=bool))]) * DT <= 1.0
 
 
 @pytest.mark.check
-def test_predictions_fit_whole_recordings_of_a_loop(folder: Path) -> None:
+def test_predictions_fit_whole_recordings_of_a_loop(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Short segments would take in with their free starts what parameters explain; bristles show as well."""
     truth = load_model(folder / "servo.yaml")
     off = truth.with_parameters({MOTOR: 0.09, "lugre_friction.bristle_stiffness": 40.0}).with_uncertainty({MOTOR: 0.02})
@@ -115,10 +121,42 @@ def test_predictions_fit_whole_recordings_of_a_loop(folder: Path) -> None:
     model = measuring(off, [run])
     known = Fitter(model, [run], [run], []).known(model, presliding=True).names
     assert "lugre_friction.bristle_stiffness" in known
+    fits, usual = list[tuple[float, float, float]](), polishing.refit_segments
+
+    def noted(begin: Model, segments: Segments, *others: Any, **more: Any) -> Refit:
+        found = usual(begin, segments, *others, **more)
+        fits.append((begin[MOTOR], segments.samples * segments.sample_time, found.model[MOTOR]))
+        return found
+
+    monkeypatch.setattr(polishing, "refit_segments", noted)
     found = polish(Fitter(model, [run], [run], []), model, [run], 4)
+    (first, short, found_first), (second, long, _) = fits
+    assert (first, second) == (0.09, found_first)
+    assert (short, long) == (pytest.approx(1.0), pytest.approx((N - 1) * DT))
     assert found.segments == 1
     assert {*found.estimates} == {*known}
     assert found.model[MOTOR] == pytest.approx(truth[MOTOR], rel=0.01)
+
+
+def test_a_loop_is_fitted_from_the_values_of_the_machine_file_too(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its equations are biased; and what fits whole recordings worse than before is not taken."""
+    runs = [read_run(folder / f"run_{k}", load_model(folder / "servo.yaml")).run for k in range(2)]
+    model, effect = measuring(load_model(folder / "servo.yaml"), runs), "viscous_friction"
+    begins, usual = list[Model](), search.polish
+
+    def noted(fitter: Fitter, begin: Model, *others: Any, **more: Any) -> Refit:
+        begins.append(begin)
+        found = usual(fitter, model, [runs[0]], 4)
+        return replace(found, model=begin.with_parameters({MOTOR: 0.1}), costs=(1.0 + len(begins),))
+
+    monkeypatch.setattr(search, "polish", noted)
+    larger = model.with_effects([*model.effects, effect], {f"{effect}.coefficient": 0.05, MOTOR: 0.08})
+    found = Search(model, runs[:1], runs[1:]).settled(larger, model.with_parameters({MOTOR: 0.09}))
+    assert [(one[MOTOR], one[f"{effect}.coefficient"]) for one in begins] == [(0.09, 0.05), (0.1, 0.0)]
+    assert found[f"{effect}.coefficient"] == 0.05  # the cheaper of both, which predicts whole recordings better
+    assert found[MOTOR] == 0.1
 
 
 def test_the_voltage_sags_by_the_ratio_of_resistances() -> None:
