@@ -114,7 +114,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     for rows in _some(np.flatnonzero(~corrects)):
         own = _moving(model, parameters[rows])
         columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
-        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts, own)
+        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts, own, true_sensors=True)
         for k, x, d in zip(rows, states, mean, strict=True):
             yield Followed(int(k), frame.states, x, columns, rest, d, None)
     columns = np.arange(m, len(rest))
@@ -157,10 +157,11 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
 
 
 def _drive_lanes(
-    model: Model, run: Run, given: Array, parameters: Array, parts: int, states: Sequence[str] | None = None
-) -> tuple[Array, Array]:
+    model: Model, run: Run, given: Array, parameters: Array, parts: int, states: Sequence[str] | None = None,
+    true_sensors: bool = False,
+) -> tuple[Array, Array]:  # fmt: skip
     """States, or those named (lanes, n, states), and claimed derivatives of lanes driven along given states."""
-    step = longest_step(model, run, parts)
+    step = longest_step(model, run, parts, true_sensors)
     rest = model.state()[given.shape[-1] :]
     columns = ("v", *(chamber.state for chamber in model.chambers))
     held = run.averaged(model.inputs, parts)

@@ -10,6 +10,8 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.hypothesis import everything, family_scales, missing, vectors
 from pneumo_ros.equations.weak import equation_residuals
 
+OFFSET = "pressure_sensor_offset.offset_b"
+
 
 def test_the_true_machine_leaves_noise_in_every_family() -> None:
     model, _, run = rig("train_steps", 1)
@@ -49,6 +51,19 @@ def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
     assert together[0] == pytest.approx(evidence.residual(model), abs=1e-6)
     moved = [float(np.abs(r - together[0]).max()) for r in together[1:]]
     assert min(moved) > 1.0, "every variant shows"
+
+
+@pytest.mark.parametrize("ranking", [False, True])
+def test_a_late_position_in_one_lane_leaves_other_lanes_alone(ranking: bool) -> None:
+    """In steps of 1 ms its states ran away, in every lane beside it: offsets of pressure sensors were none."""
+    model, _, run = own("sweep")
+    whole = everything(model, missing(model, model.inputs))
+    some = [{}, {"position_sensor_delay.delay": 5e-3}, {"position_sensor_delay.delay": 1e-3}, {OFFSET: 5e3}]
+    evidence, variants = Evidence(model, [run]), vectors(whole, some)
+    together = evidence.residuals(whole, variants, ranking=ranking)
+    alone = np.concatenate([evidence.residuals(whole, one[None], ranking=ranking) for one in variants])
+    assert together == pytest.approx(alone, abs=1e-3)
+    assert min(float(np.abs(one - together[0]).max()) for one in together[1:]) > 1.0
 
 
 FAST = {"valve_spool_dynamics.angular_frequency": 60.0, "position_sensor_delay.delay": 0.01, "line_delay.delay": 0.006}

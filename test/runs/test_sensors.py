@@ -10,7 +10,7 @@ from rig.effects import Wish, build
 
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.runs.sensors import QUICK, advanced, corrected, driven, driven_lanes, shifted
+from pneumo_ros.runs.sensors import LONGEST, QUICK, advanced, corrected, driven, driven_lanes, longest_step, shifted
 from pneumo_ros.shooting.refit import Refit, refit
 from pneumo_ros.shooting.segments import cut
 from pneumo_ros.shooting.windows import predict
@@ -103,6 +103,22 @@ def test_true_sensors_give_the_frame_back_and_drive_as_follow_does() -> None:
     held = run.averaged(model.inputs, QUICK)
     expected = model.follow(frame, held, model.state()[4:], step=run.sample_time / QUICK, parts=QUICK)
     np.testing.assert_array_equal(driven(model, frame, run), expected)
+
+
+@pytest.mark.parametrize("delay", [0.0, 1e-4, 2e-3])
+def test_the_fastest_sensor_is_stable_in_its_longest_step(delay: float) -> None:
+    """In steps of 1 ms, as in a ranking or at 500 Hz, a position that is late by 2 ms or less runs away."""
+    base, _, run = own("steps", seconds=3.0)
+    model = with_effect(base, DELAY, delay=delay)
+    frame, held = run.smoothed.frame, run.averaged(model.inputs, 1)
+
+    def lag(step: float) -> float:
+        states, _ = model.follow(frame, held, model.state()[4:], step=step, parts=1)
+        return float(np.abs(states[:, model.states.index("further")]).max())
+
+    assert lag(longest_step(model, run, 1)) < 0.01
+    assert not lag(LONGEST) < 0.01
+    assert longest_step(model, run, 1, true_sensors=True) == longest_step(base, run, 1) == LONGEST
 
 
 def test_two_parts_of_a_sample_drive_the_states_of_effects_as_well_as_ten() -> None:
