@@ -97,11 +97,10 @@ class Evidence:
         if plain is model:
             return np.ones((len(self.by_run), len(self.names)))
         both = np.stack([model.values, plain.values])
-        changes = _pool(os.getpid(), 2).map(lambda part: part.change(model, both), self.by_run)
-        grown, usual = (np.zeros((len(self.by_run), len(self.names))) for _ in both)
-        for run, change in enumerate(changes):
-            for name, squares in change.items():
-                grown[run, self.names.index(name)], usual[run, self.names.index(name)] = squares
+        first, second = (self.residuals(model, both, noisier=again) for again in (False, True))
+        shape = len(self.by_run), len(self.names)
+        place, squares = self.run * shape[1] + self.family, ((second - first) * self.noise) ** 2
+        grown, usual = (np.bincount(place, own, shape[0] * shape[1]).reshape(shape) for own in squares)
         known = (usual > 0.0) & (np.array(self.names) != "breakaway")
         return np.sqrt(np.where(known, grown, 1.0) / np.where(known, usual, 1.0))
 
@@ -109,14 +108,17 @@ class Evidence:
         """Measured minus claimed by `model`, over noise (residuals,)."""
         return np.asarray(self.residuals(model, model.values[None])[0])
 
-    def residuals(self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False) -> Array:
+    def residuals(
+        self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False, noisier: bool = False
+    ) -> Array:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
 
-        `ranking`: only as exact as the ranking of candidates needs, in less time.
+        `ranking`: only as exact as the ranking of candidates needs, in less time. `noisier`: with the noise of all
+        sensors added once more.
         """
         longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # else a long run ends last, alone
         pool = _pool(os.getpid(), threads)
-        made = {part: pool.submit(part.values, model, parameters, ranking) for part in longest_first}
+        made = {part: pool.submit(part.values, model, parameters, ranking, noisier) for part in longest_first}
         whole, at = np.empty((len(parameters), len(self.noise))), 0
         try:
             for part in self.by_run:  # each is let go when it is copied: many variants of long recordings are large
@@ -188,9 +190,9 @@ class RunEvidence:
         """Its frame with the noise of all sensors added once more."""
         return noisier(self.frame)
 
-    def values(self, model: Model, parameters: Array, ranking: bool = False, frame: Frame | None = None) -> Array:
-        """Residuals (variants, usable windows) in their units, family after family; by default of its own `frame`."""
-        frame = frame or self.frame
+    def values(self, model: Model, parameters: Array, ranking: bool = False, noisier: bool = False) -> Array:
+        """Residuals (variants, usable windows) in their units, family after family; along its frame or `noisier`."""
+        frame = self.noisier if noisier else self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
         own = measured = [self._measured(model, f, frame.states) for f in self.families]
         along: int | None = None
@@ -209,17 +211,6 @@ class RunEvidence:
             ]
             result[variant.index] = np.concatenate(parts)
         return result
-
-    def change(self, model: Model, parameters: Array) -> dict[str, Array]:
-        """By family, the mean square (variants,) of the change of its residuals where noise is added once more.
-
-        parameters (variants, parameters) of `model`.
-        """
-        first, second = (self.values(model, parameters, frame=frame) for frame in (self.frame, self.noisier))
-        ends = np.cumsum([int(family.usable.sum()) for family in self.families])[:-1]
-        squares = np.split((second - first) ** 2, ends, axis=1)
-        own = {f.name: each for f, each in zip(self.families, squares, strict=True) if each.shape[1]}
-        return {name: each.mean(axis=1) for name, each in own.items()}
 
     def _measured(self, model: Model, family: Family, states: Array) -> Measured:
         """The part of an equation's residual that depends on the frame's states alone."""

@@ -19,14 +19,14 @@ from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
-from pneumo_ros.shooting.refit import SEGMENT, Refit, refit_segments
+from pneumo_ros.shooting.refit import LOOP_SEGMENT, SEGMENT, Refit, refit_segments
 from pneumo_ros.shooting.segments import cut_at, side_by_side
 
 Index = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 SEGMENTS = 80  # of all runs together: more take longer and change little
-LOOP, FIRST = 10.0, 1.0  # s, the longest segment of a machine in its position loop, and of its first fit
+LOOP = 10.0  # s, the longest segment of a machine in its position loop
 LEAD = 0.15  # s of a segment before its breakaway
 
 
@@ -55,7 +55,7 @@ def polish(
         return refit_segments(begin, segments, known.names, holding, threads=threads, progress=progress)
 
     if model.self_driven:
-        first, whole = longest(runs, FIRST), longest(runs)
+        first, whole = longest(runs, LOOP_SEGMENT), longest(runs)
         found = fit(fit(model, first, SEGMENTS).model if first < whole else model, whole)
     else:
         found = fit(model, max(round(SEGMENT / runs[0].sample_time), 2))

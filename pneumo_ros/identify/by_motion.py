@@ -28,13 +28,13 @@ from pneumo_ros.plant import Model
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.estimates import Refit
-from pneumo_ros.shooting.refit import default_free, refit_segments
+from pneumo_ros.shooting.refit import LOOP_SEGMENT, default_free, refit_segments
 from pneumo_ros.shooting.segments import Segments, cut
 
 Array = NDArray[np.float64]
 
 SEGMENT, SAMPLES = 0.1, 20  # s and samples: a segment is at least as long as both
-LOOP_SEGMENT, FEWEST = 1.0, 10  # s, of a position loop; recordings too short for so many segments have shorter ones
+FEWEST = 10  # segments of a position loop: recordings too short for so many have shorter ones
 MOST = 140  # segments: more narrow intervals slowly and take proportionally longer
 _DETERMINED = 0.5  # of the prior deviation: a parameter that is known no better is not determined
 BRISTLE = "lugre_friction.bristle_stiffness"

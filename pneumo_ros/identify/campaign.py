@@ -18,12 +18,13 @@ from pneumo_ros.equations.breakaway import Breakaway, find_breakaways
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.identify.assembly import ADDED, COULOMB, DRAG, STATIC, STRIBECK, Assembly, Found
 from pneumo_ros.identify.by_motion import fit_by_motion, needs_motion
-from pneumo_ros.identify.flow import fitted_flow
+from pneumo_ros.identify.flow import coefficients
 from pneumo_ros.identify.friction_map import fit_map
 from pneumo_ros.identify.static_map import MapFit, MapPoint, map_points
 from pneumo_ros.identify.steady import TRAVEL, Window, find_windows
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run, check_position
+from pneumo_ros.shooting.refit import to_fit
 
 Progress = Callable[[float, str], None]
 
@@ -74,7 +75,7 @@ def identify(
         return replace(_by_motion(model, runs, why, free, tell), windows=windows)
     breakaways = tuple(b for run in runs for b in find_breakaways(model, run))
     tell(0.2, f"{len(points)} steady points, {len(breakaways)} breakaways")
-    wanted = tuple(name for name in free if name in model.parameters and name not in model.exact)
+    wanted = to_fit(model, free)
     if not wanted:
         raise UsageError(
             f"no friction parameter of {model.name} is to be identified: its machine file states that "
@@ -87,7 +88,7 @@ def identify(
     tell(0.4, "fitting the motion after breakaways")
     result.motion(runs, breakaways, lambda share, text: tell(0.4 + 0.6 * share, text))
     result.map_again(points, breakaways)
-    asked = (*wanted, *fitted_flow(model))
+    asked = (*wanted, *to_fit(model, coefficients(model)))
     unknown = {name: result.unknown[name] for name in asked if name in result.unknown}
     return Identification(
         model, result.model, result.found, unknown, result.correlations, windows, points, breakaways, result.map_fit

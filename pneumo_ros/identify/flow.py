@@ -12,6 +12,7 @@ from pneumo_ros.identify.steady import Window
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
 from pneumo_ros.shooting.lead import columns, settled
+from pneumo_ros.shooting.refit import to_fit
 
 Array = NDArray[np.float64]
 
@@ -46,11 +47,6 @@ def coefficients(model: Model) -> tuple[str, ...]:
     return tuple(name for name in COEFFICIENTS if name in model.parameters)
 
 
-def fitted_flow(model: Model) -> tuple[str, ...]:
-    """Those of `coefficients` that are fitted: the machine file does not state them to be known exactly."""
-    return tuple(name for name in coefficients(model) if name not in model.exact)
-
-
 def measured_flow(model: Model, window: Window) -> tuple[float, ...]:
     """Mass flow into each chamber [kg/s]: (p V' + V p' / gamma) / (R T), Eqs. 3-4 solved for q."""
     gamma, r_t = model["air.heat_capacity_ratio"], model["air.gas_constant"] * model["air.temperature"]
@@ -79,12 +75,11 @@ def fit_flow(model: Model, windows: Sequence[Window]) -> FlowFit:
 
     Needs the effects dead_zone and arctan_flow; without them, or with too few windows, everything is undetermined.
     """
-    further = [name for name in (*LIMITS, *PATHS) if name in model.parameters and name not in model.exact]
-    names = (*fitted_flow(model), *further)
+    names = to_fit(model, (*coefficients(model), *LIMITS, *PATHS))
     used = [w for w in windows if w.used and w.velocity * w.input > 0.0]
     if "arctan_flow" not in model.effects or not names or len(used) < 2 * len(names):
         text = f"{len(used)} steady stretches with an open valve are too few"
-        unknown = dict.fromkeys(fitted_flow(model), text)
+        unknown = dict.fromkeys(to_fit(model, coefficients(model)), text)
         return FlowFit({}, {}, unknown, np.empty((0, 0)), ())
     problem = _FlowProblem(model, used, names)
     x = least_squares(

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.breakaway import Breakaway
-from pneumo_ros.identify.flow import LIMITS, fitted_flow
+from pneumo_ros.identify.flow import LIMITS, coefficients
 from pneumo_ros.identify.friction_map import LOOSE
 from pneumo_ros.identify.presliding import STIFFNESS
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
-from pneumo_ros.shooting.refit import Estimate, refit_segments
+from pneumo_ros.shooting.refit import Estimate, refit_segments, to_fit
 from pneumo_ros.shooting.segments import cut_at
 
 Array = NDArray[np.float64]
@@ -52,8 +52,7 @@ def fit_motion(
     count = sum(len(s) for s in starts)
     if not free or count < FEWEST_BREAKAWAYS:
         return None
-    others = [name for name in (*LIMITS, STIFFNESS) if name in model.parameters and name not in model.exact]
-    beside = [name for name in (*fitted_flow(model), *others) if name not in free]
+    beside = [name for name in to_fit(model, (*coefficients(model), *LIMITS, STIFFNESS)) if name not in free]
     wide = {name: (_SURE if name in sure else _KNOWN) * abs(model[name]) for name in beside} | dict(free)
     segments = cut_at(model, chosen, starts, round((BEFORE_BREAKAWAY + AFTER_BREAKAWAY) / chosen[0].sample_time))
     fit = refit_segments(model, segments, [*free, *beside], wide, progress=progress)

@@ -7,7 +7,7 @@ eliminated segment by segment (Schur complement), so that the cost grows linearl
 simulations of one iteration run as lanes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from pneumo_ros.shooting.shooting import Progress, Shooting
 __all__ = ["Estimate", "Refit", "default_free", "refit", "refit_segments"]
 
 
-SEGMENT = 0.5  # s
+SEGMENT, LOOP_SEGMENT = 0.5, 1.0  # s: of most machines, and of one in its position loop, which bounds errors
 PRIOR = 0.05  # relative standard deviation of a parameter known to a few per cent
 
 # Parameters that a scale, a ruler or a table determines better than a motion: fixed unless named.
@@ -48,6 +48,11 @@ def default_free(model: Model) -> tuple[str, ...]:
         return name.partition(".")[0] in fitted and name not in (*FIXED, *idle) and not chosen
 
     return tuple(name for name in model.parameters if model.uncertainty.get(name, float(usually(name))) > 0.0)
+
+
+def to_fit(model: Model, names: Iterable[str]) -> tuple[str, ...]:
+    """Those of `names` that `model` has and whose values its machine file does not state to be known exactly."""
+    return tuple(name for name in names if name in model.parameters and name not in model.exact)
 
 
 def _values(model: Model, effect: type[Effect]) -> dict[str, float]:
