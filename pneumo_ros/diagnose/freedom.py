@@ -89,6 +89,11 @@ def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
     return replace(fit, offset=offset, slopes=slopes)
 
 
+def flattened(fit: BaseFit, h: Hypothesis) -> BaseFit:
+    """The fit with the points of the profile that `h` adds held where they are: without the texture of any machine."""
+    return replace(fit, slopes=np.where(points_of(fit, h), 0.0, fit.slopes))
+
+
 def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequence[Coordinate]]) -> dict[str, Array]:
     """Change of each residual by a tenth of the usual size of each size of the profiles in `lacking`, by name."""
     found = {}

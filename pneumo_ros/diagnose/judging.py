@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.candidate import Candidate
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
-from pneumo_ros.diagnose.freedom import LAW_SPREAD, loosened, points_of
+from pneumo_ros.diagnose.freedom import LAW_SPREAD, flattened, loosened, points_of
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
 from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, log_prior, moved, occam, surprise
@@ -60,10 +60,12 @@ def judged(
     ends = [np.where(points_of(base, h), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)]
     ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
     alone = scoring.best(base.everything, fits, ways, threads=2)
-    before, unaided = alone.fit[1], surprise(base, alone.fit[2])
+    unaided = surprise(base, alone.fit[2])
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h)  # a texture that its points explain is nothing that was known
+        plain = _plain(scoring, fits, h, alone)
+        before, heldout = plain.fit[1], float(beside.best.evidence[1] - plain.evidence[1])
         strained = surprise(base, alone.fit[2] * lines)
         known = strained - surprise(base, beside.best.fit[2] * lines) - 0.5 * float(h.u @ h.u)
         prior, after = unaided + beside.prior, beside.best.fit[1]
@@ -79,7 +81,7 @@ def judged(
                 ),
                 known=known,
                 first=first,
-                score=Score(float(gained[0]) + prior - beside.cost, float(gained[1])),
+                score=Score(float(gained.sum()) + prior - beside.cost - heldout, heldout),
                 lag=lag(h, base.evidence.runs[0].sample_time),
                 swing=swing(h, base.evidence.runs[0].sample_time),
             )
@@ -104,6 +106,18 @@ def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: 
         found.append(_Beside(best, log_prior(free[0], best.fit[2], h), occam(fits[0], h, spread)))
     chosen = max(found, key=lambda one: one.nats)
     return replace(chosen, cost=chosen.cost + float(np.log(len(found))))
+
+
+def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone: Best) -> Best:
+    """The best without a hypothesis, and without the texture that a profile which it adds would replace.
+
+    Such a texture is no alternative to the profile: it is a small one, and predicts held-out recordings as well.
+    """
+    points = points_of(fits[0], h)
+    if not points.any():
+        return alone
+    flat = flattened(fits[0], h), flattened(fits[1], h)
+    return scoring.best(fits[0].everything, flat, [moved(alone.fit, fits, np.where(points, -alone.fit[2], 0.0))])
 
 
 def freedom(base: BaseFit, h: Hypothesis) -> float:

@@ -27,6 +27,12 @@ def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candi
     return found
 
 
+def twins(held: BaseFit, best: Candidate, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Other candidates to which nothing is objected, and that change the same as the best one."""
+    others = (one for one in candidates if one.name != best.name and not one.objections)
+    return [one for one in others if _between(held, best, one) < MATERIAL]
+
+
 def _tied(best: Candidate, other: Candidate) -> bool:
     return best.score.nats - other.score.nats < MARGIN
 

@@ -14,7 +14,7 @@ from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
-from pneumo_ros.diagnose.judging import best_forms, freedom, judged, size_in, undetermined
+from pneumo_ros.diagnose.judging import best_forms, by_score, freedom, judged, size_in, undetermined
 from pneumo_ros.diagnose.measures import force, unexplained_force
 from pneumo_ros.diagnose.polishing import longest, polish
 from pneumo_ros.diagnose.prediction import (
@@ -27,7 +27,8 @@ from pneumo_ros.diagnose.prediction import (
     windowed,
 )
 from pneumo_ros.diagnose.refining import held_out, refine
-from pneumo_ros.diagnose.rivals import rivals, simplest
+from pneumo_ros.diagnose.rivals import rivals, simplest, twins
+from pneumo_ros.diagnose.score import occam
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
@@ -241,11 +242,26 @@ class Search:
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
         if all(candidate.objections for candidate in candidates):
             candidates = self.asked(model, candidates)
+        candidates = self.told_apart(model, ranking, candidates)
         best = simplest(base, held, candidates)
         others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
         blind = {} if best else self.unseen(model, ranking)
         return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1], blind)
+
+    def told_apart(self, model: Model, ranking: Ranking, candidates: list[Candidate]) -> list[Candidate]:
+        """The candidates; those that change the same as the best one have the score of the model refitted with them."""
+        best = next((one for one in candidates if not one.objections), None)
+        alike = [best, *twins(ranking.held, best, candidates)] if best else []
+        if best is None or len(alike) == 1:
+            return candidates
+        reached = self.fitter.evidences(ranking.base.model, [one.hypothesis for one in alike])
+        nats = [n - occam(ranking.base, one.hypothesis) for n, one in zip(reached, alike, strict=True)]
+        scores = {
+            one.name: replace(one.score, train=best.score.nats + own - nats[0] - one.score.held)
+            for one, own in zip(alike, nats, strict=True)
+        }
+        return by_score([replace(one, score=scores.get(one.name, one.score)) for one in candidates])
 
     def asked(self, model: Model, candidates: list[Candidate]) -> list[Candidate]:
         """The candidates; the best whose size or share alone is too small is asked what it is worth in predictions.
