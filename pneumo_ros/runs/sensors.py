@@ -79,8 +79,9 @@ def driven_lanes(
     Readings that are late are first taken at their own times. Then the readings r(x) are inverted by at most two steps
     of the fixed point x = x_measured - (r(x) - x); each step drives the sensors' own states again. The velocity is
     corrected by the derivative of the correction of position. Each lane stops when its correction changes by no more
-    than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane with values that are not finite is
-    returned as it is. parameters (lanes, parameters), or None for one lane with the model's own.
+    than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane whose readings are not finite has no
+    states: as measured, it would be that of a machine whose sensors are right. parameters (lanes, parameters), or None
+    for one lane with the model's own, which is returned as it is.
     """
     count = 1 if parameters is None else len(parameters)
     moving, before = np.arange(count), advanced(model, frame, parameters, run)
@@ -91,7 +92,10 @@ def driven_lanes(
     for _ in range(_ITERATIONS):
         shift = taken_back(model, states[moving], None if parameters is None else parameters[moving], run)
         still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
-        still &= np.isfinite(shift).all(axis=(1, 2))
+        lost = ~np.isfinite(shift).all(axis=(1, 2))
+        if parameters is not None:
+            states[moving[lost]] = rates[moving[lost]] = np.nan
+        still &= ~lost
         moving, before = moving[still], shift[still]
         if not len(moving):
             break
