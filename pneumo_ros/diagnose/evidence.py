@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import replace
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ Index = NDArray[np.int64]
 Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
 BLOCK = 0.4  # s: errors within a block are correlated
+RECENT = 4  # models whose amplification is kept beside those measured last
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
 
 
@@ -46,10 +47,10 @@ class Evidence:
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
         self.mass, self.piston = moving_mass(model), model["piston.mass"]
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
-        self.amplification = lru_cache(4)(self._amplification)  # a candidate's is needed several times
 
     def _index(self, by_run: list["RunEvidence"]) -> None:
         self.by_run = by_run
+        self._amplified = dict[Model, Array]()  # a candidate's is needed several times
         self.runs = tuple(part.run for part in by_run)
         families = [f for part in self.by_run for f in part.families]
         self.noise = np.concatenate([f.noise[f.usable] for f in families])
@@ -73,7 +74,6 @@ class Evidence:
         """
         other = copy(self)
         other._index([part.with_breakaways(*own) for part, *own in zip(self.by_run, noise, lowered, strict=True)])
-        other.amplification = lru_cache(4)(other._amplification)
         return other
 
     def noise_of(self, model: Model) -> Array:
@@ -87,22 +87,30 @@ class Evidence:
         noise = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
         return np.asarray(noise * self.amplification(model)[self.run, self.family])
 
-    def _amplification(self, model: Model) -> Array:
-        """Factor (runs, families) by which the states of effects in `model` amplify the sensors' noise in each run.
+    def amplification(self, model: Model) -> Array:
+        """Factor (runs, families) by which the states of effects in `model` amplify the sensors' noise in each run."""
+        if model not in self._amplified:
+            self.amplify([model])
+        return self._amplified[model]
 
-        Measured on the run, to which its noise is added once more: a load behind a play follows the rod in one run
-        and not in another. Breakaways are no windows.
+    def amplify(self, models: Sequence[Model]) -> None:
+        """Measure the amplification of models that differ in values only: together they take hardly longer than one.
+
+        It is measured on each run, to which its noise is added once more: a load behind a play follows the rod in one
+        run and not in another. Breakaways are no windows.
         """
-        plain = without_states(model)
-        if plain is model:
-            return np.ones((len(self.by_run), len(self.names)))
-        both = np.stack([model.values, plain.values])
-        first, second = (self.residuals(model, both, noisier=again) for again in (False, True))
         shape = len(self.by_run), len(self.names)
-        place, squares = self.run * shape[1] + self.family, ((second - first) * self.noise) ** 2
-        grown, usual = (np.bincount(place, own, shape[0] * shape[1]).reshape(shape) for own in squares)
-        known = (usual > 0.0) & (np.array(self.names) != "breakaway")
-        return np.sqrt(np.where(known, grown, 1.0) / np.where(known, usual, 1.0))
+        pairs = [(model, plain) for model in models if (plain := without_states(model)) is not model]
+        found = {model: np.ones(shape) for model in models}
+        if pairs:
+            both = np.stack([one.values for pair in pairs for one in pair])
+            change = np.subtract(*(self.residuals(models[0], both, noisier=again) for again in (True, False)))
+            place, windows = self.run * shape[1] + self.family, np.array(self.names) != "breakaway"
+            for (model, _), own in zip(pairs, (change * self.noise).reshape(len(pairs), 2, -1) ** 2, strict=True):
+                grown, usual = (np.bincount(place, one, shape[0] * shape[1]).reshape(shape) for one in own)
+                known = (usual > 0.0) & windows
+                found[model] = np.sqrt(np.where(known, grown, 1.0) / np.where(known, usual, 1.0))
+        self._amplified = dict([*self._amplified.items()][-RECENT:]) | found
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""

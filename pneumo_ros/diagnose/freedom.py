@@ -72,14 +72,24 @@ def uneven(fit: BaseFit, columns: Mapping[str, Array]) -> BaseFit:
     return fit
 
 
-def points_of(fit: BaseFit, h: Hypothesis) -> NDArray[np.bool_]:
-    """Which free parameters (free,) are points of a profile that the model lacks and that `h` adds."""
-    return np.array([name.partition(" ")[0] == h.name for name in fit.names], dtype=bool)
+def points_of(fit: BaseFit, added: str) -> NDArray[np.bool_]:
+    """Which free parameters (free,) are points of a profile that the model lacks and that is `added`."""
+    return np.array([name.partition(" ")[0] == added for name in fit.names], dtype=bool)
+
+
+def of_points(fit: BaseFit, name: str, own: Sequence[Coordinate]) -> Array:
+    """Slopes (residuals, own) by the coordinates of a profile: those of the texture; (0, 0) for any other effect."""
+    points = points_of(fit, name)
+    if not points.any():
+        return np.empty((0, 0))
+    sizes = [c.name for c in coordinates(fit.model.library.find(name)) if c.is_size]
+    columns = dict(zip(sizes, np.flatnonzero(points).tolist(), strict=True))
+    return np.asarray(fit.slopes[:, [columns[c.name] for c in own]] / LAW_SPREAD)
 
 
 def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
     """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has."""
-    own, u = points_of(fit, h), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
+    own, u = points_of(fit, h.name), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
     if not own.any():
         return fit
     sizes = [c.name for c in coordinates(fit.model.library.find(h.name)) if c.is_size]
@@ -91,7 +101,7 @@ def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
 
 def flattened(fit: BaseFit, h: Hypothesis) -> BaseFit:
     """The fit with the points of the profile that `h` adds held where they are: without the texture of any machine."""
-    return replace(fit, slopes=np.where(points_of(fit, h), 0.0, fit.slopes))
+    return replace(fit, slopes=np.where(points_of(fit, h.name), 0.0, fit.slopes))
 
 
 def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequence[Coordinate]]) -> dict[str, Array]:

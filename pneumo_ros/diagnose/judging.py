@@ -53,17 +53,22 @@ def judged(
         return found
     scoring.measure(base.everything, nothing.residual, held.residual)
     alone = scoring.best(base.everything, fits, [(nothing.residual, held.residual, nothing.shift)])
+    models = [base.everything.with_parameters(h.values) for h in hypotheses]
+    for part in scoring.parts:
+        part.amplify(models)
     with ThreadPoolExecutor(2) as pool:
-        reached = list(pool.map(lambda h, r: _best(scoring, fits, h, r, alone), hypotheses, residuals))
+        reached = list(pool.map(lambda m, h, r: _best(scoring, fits, m, h, r, alone), models, hypotheses, residuals))
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
     here = alone.fit[2]
-    ends = [np.where(points_of(base, h), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)]
+    ends = [
+        np.where(points_of(base, h.name), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)
+    ]
     ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
     alone = scoring.best(base.everything, fits, ways, threads=2)
     unaided = surprise(base, alone.fit[2])
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
         gained = beside.best.evidence - alone.evidence
-        lines = ~points_of(base, h)  # a texture that its points explain is nothing that was known
+        lines = ~points_of(base, h.name)  # a texture that its points explain is nothing that was known
         plain = _plain(scoring, fits, h, alone)
         before, heldout = plain.fit[1], float(beside.best.evidence[1] - plain.evidence[1])
         strained = surprise(base, alone.fit[2] * lines)
@@ -89,12 +94,14 @@ def judged(
     return best_forms(found)
 
 
-def _best(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, held: Array, alone: Best) -> _Beside:
+def _best(
+    scoring: Scoring, fits: tuple[BaseFit, BaseFit], model: Model, h: Hypothesis, held: Array, alone: Best
+) -> _Beside:
     """`Scoring.best` of a hypothesis, from its own base parameters or from those that are best without it.
 
-    Points of a profile that it adds are `loosened`, by the spread of the largest score.
+    `model` holds the hypothesis. Points of a profile that it adds are `loosened`, by the spread of the largest score.
     """
-    model, points, found = fits[0].everything.with_parameters(h.values), points_of(fits[0], h), list[_Beside]()
+    points, found = points_of(fits[0], h.name), list[_Beside]()
     for spread in SPREADS if points.any() else (1.0,):
         free, here = (loosened(fits[0], h, spread), loosened(fits[1], h, spread)), h.shift.copy()
         here[points] *= LAW_SPREAD / spread
@@ -113,7 +120,7 @@ def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone
 
     Such a texture is no alternative to the profile: it is a small one, and predicts held-out recordings as well.
     """
-    points = points_of(fits[0], h)
+    points = points_of(fits[0], h.name)
     if not points.any():
         return alone
     flat = flattened(fits[0], h), flattened(fits[1], h)
@@ -122,7 +129,7 @@ def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone
 
 def freedom(base: BaseFit, h: Hypothesis) -> float:
     """Nats that the freedom of a hypothesis costs beside its likelihood; of a profile, by the spread that suits it."""
-    spreads = SPREADS if points_of(base, h).any() else (1.0,)
+    spreads = SPREADS if points_of(base, h.name).any() else (1.0,)
     return min(occam(base, h, s) + 0.5 * (1.0 / s**2 - 1.0) * float(h.u @ h.u) for s in spreads)
 
 

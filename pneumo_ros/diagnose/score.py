@@ -356,7 +356,7 @@ def log_prior(free: BaseFit, shift: Array, h: Hypothesis) -> float:
 
     Where they hold the candidate's own points, as those of a profile, its coordinates count among them.
     """
-    own = 0.0 if points_of(free, h).any() else 0.5 * float(h.u @ h.u)
+    own = 0.0 if points_of(free, h.name).any() else 0.5 * float(h.u @ h.u)
     return -surprise(free, shift) - own
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import relief_of, strain
-from pneumo_ros.diagnose.coordinates import Coordinate, forms, starts
+from pneumo_ros.diagnose.coordinates import Coordinate, forms, is_profile, starts
+from pneumo_ros.diagnose.freedom import of_points
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -55,6 +56,7 @@ def couples(everything: Model, effect: Sequence[Coordinate], absent: str) -> boo
 def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
 
+    A profile is that whose points are free as a texture, and acts by the same slopes.
     Where base parameters are strained, also by the slope at neutral, by which they replace an effect; and so a rate
     [1/s], whose effect saturates: in a large chamber all that happens is slow.
     """
@@ -69,11 +71,13 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     tasks += [(name, form, SMALL_STEP * starts(form)[0]) for name, form in each if _saturates(form)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
-    for _name, effect, u in tasks:
+    made = {name: of_points(base, name, effect) for name, effect in each if is_profile(effect)}
+    made = {name: slopes for name, slopes in made.items() if slopes.size}
+    for name, effect, u in tasks:
         shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
         sizes = [k for k, c in enumerate(effect) if c.is_size]
         own = []
-        for k in sizes:
+        for k in sizes if name not in made else ():
             values = {c.name: c.neutral for c in effect if c.is_size and c.neutral is not None}
             own.append(values | shape | {effect[k].name: effect[k].value(u[k])})
         spans.append((len(variants), len(own), sizes))
@@ -82,7 +86,8 @@ def screen(base: BaseFit) -> list[Hypothesis]:
 
     def fitted(k: int) -> Hypothesis:
         (name, effect, u), (first, count, sizes) = tasks[k], spans[k]
-        return _linear(base, name, effect, u, sizes, (residual[first : first + count] - residual[0]).T)
+        changes = made[name] * u if name in made else (residual[first : first + count] - residual[0]).T
+        return _linear(base, name, effect, u, sizes, changes)
 
     with ThreadPoolExecutor(2) as pool:
         return sorted(pool.map(fitted, range(len(tasks))), key=lambda h: -h.likelihood)

@@ -136,6 +136,18 @@ def test_each_recording_says_how_much_of_the_noise_a_load_takes_in() -> None:
     assert noise[both.run == 0] == pytest.approx(1.0)
 
 
+def test_models_measured_together_amplify_as_each_alone() -> None:
+    model, _, run = own("sweep")
+    loose = model.with_effects([*model.effects, "backlash"], {"backlash.gap": 0.0, "backlash.load_share": 0.5})
+    some = [loose.with_parameters({"backlash.load_gap": gap}) for gap in (4e-3, 0.1)]
+    still = loose.with_parameters({"backlash.load_share": 0.0})
+    together, alone = Evidence(model, [run]), Evidence(model, [run])
+    together.amplify([some[0], still, some[1]])
+    for one in (*some, still):
+        np.testing.assert_allclose(together.amplification(one), alone.amplification(one), rtol=1e-9)
+    assert together.amplification(some[0])[0, 0] != together.amplification(some[1])[0, 0]
+
+
 def test_a_load_that_rings_with_the_noise_of_the_position_has_more_of_it() -> None:
     """It once passed for a contradiction of 1260 nats to the load that had been found at breakaways."""
     model, _, run = own("sweep")

@@ -15,6 +15,7 @@ from pneumo_ros.diagnose.freedom import (
     conditions,
     freed,
     loosened,
+    of_points,
     points_of,
     relative,
     shaping,
@@ -127,20 +128,29 @@ def test_points_of_a_profile_that_is_a_candidate_are_known_as_effects_are(spread
     h = Hypothesis(PROFILE, some, np.array([1.0, 2.0, 3.0]), np.zeros(26), fit.residual)
     free = loosened(fit, h, spread)
     assert free.offset == pytest.approx([1.0, 0.0, 0.0, 0.0, *(np.arange(1, 4) / spread), *([0.0] * 19)])
-    np.testing.assert_allclose(free.slopes[:, points_of(fit, h)], fit.slopes[:, 1:] * spread / LAW_SPREAD)
+    np.testing.assert_allclose(free.slopes[:, points_of(fit, h.name)], fit.slopes[:, 1:] * spread / LAW_SPREAD)
     # taken back to nothing, its points cost nothing; as they are, each half the square of its size in spreads
-    here, back = np.zeros(26), -free.offset * points_of(fit, h)
+    here, back = np.zeros(26), -free.offset * points_of(fit, h.name)
     assert log_prior(free, here, h) - log_prior(free, back, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0) / spread**2)
     other = replace(h, name="constant_load")
     assert loosened(fit, other, spread) is fit
     assert log_prior(fit, here, other) - log_prior(free, back, h) == pytest.approx(-0.5 * (1.0 + 4.0 + 9.0))
 
 
+def test_slopes_of_a_profile_are_those_of_its_texture() -> None:
+    """By usual sizes, in the order of the candidate's coordinates; no other effect has such points."""
+    fit = BaseFit(START, START, ("a",), np.ones(1), np.ones(1), EVIDENCE, np.zeros(N), np.zeros((N, 1)))
+    fit, own = uneven(fit, {PROFILE: 0.5 * KNOTS.T}), tuple(coordinates(START.library.find(PROFILE))[3:6])
+    np.testing.assert_allclose(of_points(fit, PROFILE, own[::-1]), 0.5 * KNOTS.T[:, [5, 4, 3]] / LAW_SPREAD)
+    assert of_points(fit, "constant_load", ()).size == 0
+    assert of_points(replace(fit, names=("a",)), PROFILE, own).size == 0
+
+
 def test_a_model_without_free_parameters_has_no_points() -> None:
     """As sealed chambers whose motion is imposed: an array without an element still says which of them."""
     fit = BaseFit(START, START, (), np.ones(0), np.zeros(0), EVIDENCE, np.zeros(N), np.zeros((N, 0)))
     h = Hypothesis("heat_exchange", (), np.empty(0), np.zeros(0), fit.residual)
-    assert np.zeros(0)[points_of(fit, h)].shape == (0,)
+    assert np.zeros(0)[points_of(fit, h.name)].shape == (0,)
 
 
 def test_only_profiles_are_free_where_the_model_lacks_them() -> None:

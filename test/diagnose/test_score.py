@@ -35,7 +35,7 @@ def evidence(windows: int = N, name: str = "momentum 100 ms", runs: int = 1) -> 
         """All of it is noise of the position, which the mass amplifies."""
         return np.full(windows, model["piston.mass"] / MODEL["piston.mass"])
 
-    return cast(Evidence, SimpleNamespace(**parts, noise_of=noise_of))
+    return cast(Evidence, SimpleNamespace(**parts, noise_of=noise_of, amplify=lambda _models: None))
 
 
 def noise(seed: int, windows: int = N, scale: float = 1.0) -> Array:
