@@ -31,6 +31,7 @@ Index = NDArray[np.int64]
 Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
 BLOCK = 0.4  # s: errors within a block are correlated
+DRAWS = 4  # of the sensors' noise, by which it is measured how much a model amplifies it
 RECENT = 4  # models whose amplification is kept beside those measured last
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
 
@@ -97,19 +98,25 @@ class Evidence:
         """Measure the amplification of models that differ in values only: together they take hardly longer than one.
 
         It is measured on each run, to which its noise is added once more: a load behind a play follows the rod in one
-        run and not in another. Breakaways are no windows.
+        run and not in another. In its usual window, as the median says: where such a load knocks, earlier or later with
+        the noise, a few windows change so much that their mean square says nothing of all others. Breakaways are no
+        windows.
         """
         shape = len(self.by_run), len(self.names)
         pairs = [(model, plain) for model in models if (plain := without_states(model)) is not model]
         found = {model: np.ones(shape) for model in models}
         if pairs:
             both = np.stack([one.values for pair in pairs for one in pair])
-            change = np.subtract(*(self.residuals(models[0], both, noisier=again) for again in (True, False)))
-            place, windows = self.run * shape[1] + self.family, np.array(self.names) != "breakaway"
-            for (model, _), own in zip(pairs, (change * self.noise).reshape(len(pairs), 2, -1) ** 2, strict=True):
-                grown, usual = (np.bincount(place, one, shape[0] * shape[1]).reshape(shape) for one in own)
-                known = (usual > 0.0) & windows
-                found[model] = np.sqrt(np.where(known, grown, 1.0) / np.where(known, usual, 1.0))
+            quiet = self.residuals(models[0], both)
+            draws = [self.residuals(models[0], both, noisier=k) - quiet for k in range(1, DRAWS + 1)]
+            change = np.abs(np.stack(draws, axis=-1)).reshape(len(pairs), 2, len(self), DRAWS)
+            for run, family in np.ndindex(shape):
+                own = (self.run == run) & (self.family == family)
+                if own.any() and self.names[family] != "breakaway":
+                    grown, usual = np.median(change[:, :, own].reshape(len(pairs), 2, -1), axis=-1).T
+                    factors = np.where(usual > 0.0, grown, 1.0) / np.where(usual > 0.0, usual, 1.0)
+                    for (model, _), factor in zip(pairs, factors, strict=True):
+                        found[model][run, family] = factor
         self._amplified = dict([*self._amplified.items()][-RECENT:]) | found
 
     def residual(self, model: Model) -> Array:
@@ -117,12 +124,12 @@ class Evidence:
         return np.asarray(self.residuals(model, model.values[None])[0])
 
     def residuals(
-        self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False, noisier: bool = False
+        self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False, noisier: int = 0
     ) -> Array:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
 
         `ranking`: only as exact as the ranking of candidates needs, in less time. `noisier`: with the noise of all
-        sensors added once more.
+        sensors added once more, in this draw of `DRAWS`, counted from 1.
         """
         longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # else a long run ends last, alone
         pool = _pool(os.getpid(), threads)
@@ -194,13 +201,13 @@ class RunEvidence:
         return other
 
     @cached_property
-    def noisier(self) -> Frame:
-        """Its frame with the noise of all sensors added once more."""
-        return noisier(self.frame)
+    def noisier(self) -> list[Frame]:
+        """Its frame with the noise of all sensors added once more, drawn several times."""
+        return [noisier(self.frame, k) for k in range(DRAWS)]
 
-    def values(self, model: Model, parameters: Array, ranking: bool = False, noisier: bool = False) -> Array:
+    def values(self, model: Model, parameters: Array, ranking: bool = False, noisier: int = 0) -> Array:
         """Residuals (variants, usable windows) in their units, family after family; along its frame or `noisier`."""
-        frame = self.noisier if noisier else self.frame
+        frame = self.noisier[noisier - 1] if noisier else self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
         own = measured = [self._measured(model, f, frame.states) for f in self.families]
         along: int | None = None

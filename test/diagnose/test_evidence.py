@@ -103,7 +103,8 @@ def test_models_of_any_piston_weigh_the_momentum_alike() -> None:
 def test_a_load_that_takes_the_noise_in_is_judged_by_less_of_it() -> None:
     """Half of the mass, behind a play wider than most of the motion, does not follow the noise of the position.
 
-    Behind a narrow one it knocks at each reversal, earlier or later with that noise: there is more of it.
+    Behind a narrow one it follows, and knocks at each reversal, earlier or later with that noise. A few windows then
+    change by many times the noise, and say nothing of all others.
     """
     model, _, run = own("sweep")
     evidence, name = Evidence(model, [run]), "backlash"
@@ -115,7 +116,7 @@ def test_a_load_that_takes_the_noise_in_is_judged_by_less_of_it() -> None:
 
     wide, narrow = factors(0.1), factors(4e-3)
     assert 0.5 < wide["momentum 40 ms"] < 0.85
-    assert narrow["momentum 40 ms"] > 1.3
+    assert wide["momentum 40 ms"] < narrow["momentum 40 ms"] < 1.0
     assert all(value == pytest.approx(1.0) for key, value in wide.items() if not key.startswith("momentum"))
 
 
