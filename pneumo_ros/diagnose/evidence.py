@@ -11,6 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import replace
 from functools import cache, cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +32,6 @@ Index = NDArray[np.int64]
 Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
 BLOCK = 0.4  # s: errors within a block are correlated
-DRAWS = 4  # of the sensors' noise, by which it is measured how much a model amplifies it
-RECENT = 4  # models whose amplification is kept beside those measured last
 _CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
 
 
@@ -51,7 +50,7 @@ class Evidence:
 
     def _index(self, by_run: list["RunEvidence"]) -> None:
         self.by_run = by_run
-        self._amplified = dict[Model, Array]()  # a candidate's is needed several times
+        self._amplified = WeakKeyDictionary[Model, Array]()  # a candidate's is needed several times
         self.runs = tuple(part.run for part in by_run)
         families = [f for part in self.by_run for f in part.families]
         self.noise = np.concatenate([f.noise[f.usable] for f in families])
@@ -104,32 +103,30 @@ class Evidence:
         """
         shape = len(self.by_run), len(self.names)
         pairs = [(model, plain) for model in models if (plain := without_states(model)) is not model]
-        found = {model: np.ones(shape) for model in models}
+        factors = np.ones((len(pairs), *shape))
         if pairs:
             both = np.stack([one.values for pair in pairs for one in pair])
-            quiet = self.residuals(models[0], both)
-            draws = [self.residuals(models[0], both, noisier=k) - quiet for k in range(1, DRAWS + 1)]
-            change = np.abs(np.stack(draws, axis=-1)).reshape(len(pairs), 2, len(self), DRAWS)
+            before, after = (self.residuals(models[0], both, noisier=again) for again in (False, True))
+            change = np.abs(after - before).reshape(len(pairs), 2, len(self))
             for run, family in np.ndindex(shape):
                 own = (self.run == run) & (self.family == family)
                 if own.any() and self.names[family] != "breakaway":
-                    grown, usual = np.median(change[:, :, own].reshape(len(pairs), 2, -1), axis=-1).T
-                    factors = np.where(usual > 0.0, grown, 1.0) / np.where(usual > 0.0, usual, 1.0)
-                    for (model, _), factor in zip(pairs, factors, strict=True):
-                        found[model][run, family] = factor
-        self._amplified = dict([*self._amplified.items()][-RECENT:]) | found
+                    grown, usual = np.median(change[:, :, own], axis=-1).T
+                    factors[:, run, family] = np.divide(grown, usual, out=np.ones(len(pairs)), where=usual > 0.0)
+        self._amplified.update({model: np.ones(shape) for model in models})
+        self._amplified.update(zip((model for model, _ in pairs), factors, strict=True))
 
     def residual(self, model: Model) -> Array:
         """Measured minus claimed by `model`, over noise (residuals,)."""
         return np.asarray(self.residuals(model, model.values[None])[0])
 
     def residuals(
-        self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False, noisier: int = 0
+        self, model: Model, parameters: Array, threads: int = 2, ranking: bool = False, noisier: bool = False
     ) -> Array:
         """The same for many parameter vectors (variants, parameters) of one model: (variants, residuals).
 
         `ranking`: only as exact as the ranking of candidates needs, in less time. `noisier`: with the noise of all
-        sensors added once more, in this draw of `DRAWS`, counted from 1.
+        sensors added once more.
         """
         longest_first = sorted(self.by_run, key=lambda part: -len(part.run))  # else a long run ends last, alone
         pool = _pool(os.getpid(), threads)
@@ -201,13 +198,13 @@ class RunEvidence:
         return other
 
     @cached_property
-    def noisier(self) -> list[Frame]:
-        """Its frame with the noise of all sensors added once more, drawn several times."""
-        return [noisier(self.frame, k) for k in range(DRAWS)]
+    def noisier(self) -> Frame:
+        """Its frame with the noise of all sensors added once more."""
+        return noisier(self.frame)
 
-    def values(self, model: Model, parameters: Array, ranking: bool = False, noisier: int = 0) -> Array:
+    def values(self, model: Model, parameters: Array, ranking: bool = False, noisier: bool = False) -> Array:
         """Residuals (variants, usable windows) in their units, family after family; along its frame or `noisier`."""
-        frame = self.noisier[noisier - 1] if noisier else self.frame
+        frame = self.noisier if noisier else self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
         own = measured = [self._measured(model, f, frame.states) for f in self.families]
         along: int | None = None

@@ -44,9 +44,9 @@ def frame_of(run: Run, chambers: Sequence[Chamber]) -> Frame:
     return Frame(run, tuple(chambers), states)
 
 
-def noisier(frame: Frame, seed: int = 0) -> Frame:
+def noisier(frame: Frame) -> Frame:
     """The frame of the run with the noise of its sensors added once more; what rests still rests."""
-    run, draw = frame.run, np.random.default_rng(seed)
+    run, draw = frame.run, np.random.default_rng(0)
     again: dict[str, Any] = {
         name.rpartition("_")[0]: signal + draw.normal(0.0, run.noise[name], len(signal))
         for name, signal in run.signals.items()

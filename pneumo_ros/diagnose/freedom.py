@@ -77,7 +77,7 @@ def points_of(fit: BaseFit, added: str) -> NDArray[np.bool_]:
     return np.array([name.partition(" ")[0] == added for name in fit.names], dtype=bool)
 
 
-def of_points(fit: BaseFit, name: str, own: Sequence[Coordinate]) -> Array:
+def profile_slopes(fit: BaseFit, name: str, own: Sequence[Coordinate]) -> Array:
     """Slopes (residuals, own) by the coordinates of a profile: those of the texture; (0, 0) for any other effect."""
     points = points_of(fit, name)
     if not points.any():

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import at_best, relief_of
-from pneumo_ros.diagnose.freedom import of_points
+from pneumo_ros.diagnose.freedom import profile_slopes
 from pneumo_ros.diagnose.hypothesis import (
     COORDINATE_PROBE,
     BaseFit,
@@ -33,7 +33,7 @@ def refine(
 
     Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
-    best = [replace(h, likelihood=-np.inf, slopes=of_points(base, h.name, h.coordinates)) for h in hypotheses]
+    best = [replace(h, likelihood=-np.inf, slopes=profile_slopes(base, h.name, h.coordinates)) for h in hypotheses]
     begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
     moving = list(range(len(best)))
     for _k in range(iterations):

@@ -27,10 +27,10 @@ def rivals(base: BaseFit, held: BaseFit, best: Candidate, others: Sequence[Candi
     return found
 
 
-def twins(held: BaseFit, best: Candidate, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Other candidates to which nothing is objected, and that change the same as the best one."""
-    others = (one for one in candidates if one.name != best.name and not one.objections)
-    return [one for one in others if _between(held, best, one) < MATERIAL]
+def twins(held: BaseFit, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The best candidate to which nothing is objected, and others of that kind that change the same."""
+    fair = [one for one in candidates if not one.objections]
+    return [one for one in fair if one is fair[0] or _between(held, fair[0], one) < MATERIAL]
 
 
 def _tied(best: Candidate, other: Candidate) -> bool:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import relief_of, strain
-from pneumo_ros.diagnose.coordinates import Coordinate, forms, is_profile, starts
-from pneumo_ros.diagnose.freedom import of_points
+from pneumo_ros.diagnose.coordinates import Coordinate, forms, starts
+from pneumo_ros.diagnose.freedom import profile_slopes
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
@@ -56,9 +56,9 @@ def couples(everything: Model, effect: Sequence[Coordinate], absent: str) -> boo
 def screen(base: BaseFit) -> list[Hypothesis]:
     """Every candidate, in every shape tried, fitted linearly from neutral to its usual size; best first.
 
-    A profile is that whose points are free as a texture, and acts by the same slopes.
-    Where base parameters are strained, also by the slope at neutral, by which they replace an effect; and so a rate
-    [1/s], whose effect saturates: in a large chamber all that happens is slow.
+    A profile acts by the slopes of its points, which every model has. Where base parameters are strained, also by the
+    slope at neutral, by which they replace an effect; and so a rate [1/s], whose effect saturates: in a large chamber
+    all that happens is slow.
     """
     found = missing(base.model, base.everything.inputs)
     found = {name: effect for name, effect in found.items() if name in base.everything.effects}
@@ -71,8 +71,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     tasks += [(name, form, SMALL_STEP * starts(form)[0]) for name, form in each if _saturates(form)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
-    made = {name: of_points(base, name, effect) for name, effect in each if is_profile(effect)}
-    made = {name: slopes for name, slopes in made.items() if slopes.size}
+    made = {name: slopes for name, effect in each if (slopes := profile_slopes(base, name, effect)).size}
     for name, effect, u in tasks:
         shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
         sizes = [k for k, c in enumerate(effect) if c.is_size]

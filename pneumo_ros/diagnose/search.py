@@ -242,23 +242,22 @@ class Search:
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
         if all(candidate.objections for candidate in candidates):
             candidates = self.asked(model, candidates)
-        candidates = self.told_apart(model, ranking, candidates)
+        candidates = self.told_apart(ranking, candidates)
         best = simplest(base, held, candidates)
         others = rivals(base, held, best, candidates) if best else []
         scales = [_scales(self.held, residual) for residual in (held.residual, best.held if best else held.residual)]
         blind = {} if best else self.unseen(model, ranking)
         return Step(model, tuple(candidates), best, tuple(others), scales[0], scales[1], blind)
 
-    def told_apart(self, model: Model, ranking: Ranking, candidates: list[Candidate]) -> list[Candidate]:
+    def told_apart(self, ranking: Ranking, candidates: list[Candidate]) -> list[Candidate]:
         """The candidates; those that change the same as the best one have the score of the model refitted with them."""
-        best = next((one for one in candidates if not one.objections), None)
-        alike = [best, *twins(ranking.held, best, candidates)] if best else []
-        if best is None or len(alike) == 1:
+        alike = twins(ranking.held, candidates)
+        if len(alike) < 2:
             return candidates
         reached = self.fitter.evidences(ranking.base.model, [one.hypothesis for one in alike])
         nats = [n - occam(ranking.base, one.hypothesis) for n, one in zip(reached, alike, strict=True)]
         scores = {
-            one.name: replace(one.score, train=best.score.nats + own - nats[0] - one.score.held)
+            one.name: replace(one.score, train=alike[0].score.nats + own - nats[0] - one.score.held)
             for one, own in zip(alike, nats, strict=True)
         }
         return by_score([replace(one, score=scores.get(one.name, one.score)) for one in candidates])

@@ -15,8 +15,8 @@ from pneumo_ros.diagnose.freedom import (
     conditions,
     freed,
     loosened,
-    of_points,
     points_of,
+    profile_slopes,
     relative,
     shaping,
     uneven,
@@ -141,9 +141,9 @@ def test_slopes_of_a_profile_are_those_of_its_texture() -> None:
     """By usual sizes, in the order of the candidate's coordinates; no other effect has such points."""
     fit = BaseFit(START, START, ("a",), np.ones(1), np.ones(1), EVIDENCE, np.zeros(N), np.zeros((N, 1)))
     fit, own = uneven(fit, {PROFILE: 0.5 * KNOTS.T}), tuple(coordinates(START.library.find(PROFILE))[3:6])
-    np.testing.assert_allclose(of_points(fit, PROFILE, own[::-1]), 0.5 * KNOTS.T[:, [5, 4, 3]] / LAW_SPREAD)
-    assert of_points(fit, "constant_load", ()).size == 0
-    assert of_points(replace(fit, names=("a",)), PROFILE, own).size == 0
+    np.testing.assert_allclose(profile_slopes(fit, PROFILE, own[::-1]), 0.5 * KNOTS.T[:, [5, 4, 3]] / LAW_SPREAD)
+    assert profile_slopes(fit, "constant_load", ()).size == 0
+    assert profile_slopes(replace(fit, names=("a",)), PROFILE, own).size == 0
 
 
 def test_a_model_without_free_parameters_has_no_points() -> None:
