@@ -119,10 +119,11 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
             yield Followed(int(k), frame.states, x, columns, rest, d, None)
     columns = np.arange(m, len(rest))
     for rows in _some(np.flatnonzero(corrects)):
-        states, mean, first = _corrected(model, frame, parameters[rows], parts)
+        made, first = _corrected(model, frame, parameters[rows], parts)
         for j in np.argsort(first, kind="stable"):
-            x = states[j]
-            yield Followed(int(rows[j]), x[:, :m], x[:, m:], columns, rest, mean[j], int(rows[first[j]]))
+            x, d = made[j]
+            yield Followed(int(rows[j]), x[:, :m], x[:, m:], columns, rest, d, int(rows[first[j]]))
+        del made, x, d  # before the next ones are made
 
 
 def _moving(model: Model, parameters: Array) -> list[str]:
@@ -137,10 +138,10 @@ def _some(own: Index) -> Iterator[Index]:
     return (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE))
 
 
-def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Array, Index]:
+def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[list[tuple[Array, Array]], Index]:
     """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors.
 
-    Their states, claimed derivatives, and the first lane (lanes,) of the group of each.
+    The states and claimed derivatives of each, and the first lane (lanes,) of its group.
     """
     first, group = alike_sensors(model, parameters)
     own = parameters[first]
@@ -148,12 +149,14 @@ def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tup
         model, frame.states, frame.run, own,
         lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts), _SETTLED,
     )  # fmt: skip
-    states, mean = own_states[group], own_mean[group]
+    made = [(own_states[k], own_mean[k]) for k in group]  # not copied: they are large
     others = np.setdiff1d(np.arange(len(group)), first)
     if len(others):
         along = given[0] if len(first) == 1 else given[group[others]]
-        states[others], mean[others] = _drive_lanes(model, frame.run, along, parameters[others], parts)
-    return states, mean, first[group]
+        each = zip(*_drive_lanes(model, frame.run, along, parameters[others], parts), strict=True)
+        for k, (x, d) in zip(others, each, strict=True):
+            made[k] = x, d
+    return made, first[group]
 
 
 def _drive_lanes(

@@ -90,7 +90,9 @@ def driven_lanes(
         given[lane] = shifted(frame, before[lane], run.sample_time)
     states, rates = drive(given, moving)
     for _ in range(_ITERATIONS):
-        shift = taken_back(model, states[moving], None if parameters is None else parameters[moving], run)
+        some = states if len(moving) == count else states[moving]  # all of them are large
+        shift = taken_back(model, some, None if parameters is None else parameters[moving], run)
+        del some
         still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
         lost = ~np.isfinite(shift).all(axis=(1, 2))
         if parameters is not None:
@@ -100,7 +102,11 @@ def driven_lanes(
         if not len(moving):
             break
         given[moving] = [shifted(frame, own, run.sample_time) for own in before]
-        states[moving], rates[moving] = drive(given[moving], moving)
+        if len(moving) < count:
+            states[moving], rates[moving] = drive(given[moving], moving)
+        else:
+            del states, rates  # before the new ones are made
+            states, rates = drive(given, moving)
     return given, states, rates
 
 
