@@ -30,7 +30,7 @@ class Candidate:
     first: bool  # whether nothing was added before
     score: Score  # nats that it gains over the model without it
     known: float = 0.0  # nats of them by which it agrees better with what was known of the model's parameters
-    pays: float = 0.0  # share of the error of predictions of held-out runs that it removes, where that was asked
+    pays: float = 0.0  # the same of predictions of held-out runs, where that was asked
     contained: bool = False  # whether an effect that contains it removes enough, and is hardly better
     lag: float = np.inf  # samples, of an effect that delays
     swing: float = np.inf  # samples in half a period, of an effect that oscillates
@@ -44,7 +44,7 @@ class Candidate:
 
     @property
     def least(self) -> float:
-        """Share of the misfit beyond noise, or of the error of predictions, that it must remove."""
+        """Share of the misfit beyond noise, or of predictions' mean square error beyond it, that it must remove."""
         return SHARE_LEAST[0 if self.first else 1]
 
     @property

@@ -15,6 +15,7 @@ FORCES = ("momentum", "breakaway")  # equations in newtons
 FEWEST_WINDOWS = 30  # windows where an effect acts: a family with fewer is not judged there; windows overlap
 FEWEST_OF = {"breakaway": 8}  # the same for families without overlap
 MATERIAL_FORCE = 0.007  # of the drive force: a smaller misfit is a texture of friction that no model has
+NOISE_SHARE = 0.1  # of the mean square of noise: a smaller misfit beyond noise is none
 NOISE = {"breakaway": 0.56}  # mean square of noise alone, where it is not 1: the stated spread is larger
 
 
@@ -64,14 +65,18 @@ def explained(
 ) -> float:
     """Largest reduction, over the equations, from `before` to `after`, as a share of the mean square beyond noise.
 
-    `textured`: and beyond a texture of forces. In `rows` (residuals,); over all breakaways if `rows` holds too few of
-    them, as when each changes a little.
+    0 where it rises in all. `textured`: and beyond a texture of forces; what is less is nothing to remove. In `rows`
+    (residuals,); over all breakaways if `rows` holds too few of them, as when each changes a little.
     """
     whole = [{n: v for n, v in mean_squares(evidence, r).items() if n in FEWEST_OF} for r in (before, after)]
     first, second = (w | mean_squares(evidence, r, rows) for w, r in zip(whole, (before, after), strict=True))
-    noise, rough = {name: NOISE.get(name, 1.0) for name in first}, texture(evidence) if textured else {}
-    shares = ((first[n] - second[n]) / max(first[n] - noise[n] - rough.get(n, 0.0), 0.1 * noise[n]) for n in first)
-    return max(shares, default=0.0)
+    rough = texture(evidence) if textured else {}
+    shares = [0.0]
+    for name, value in first.items():
+        noise = NOISE.get(name, 1.0)
+        beyond, left = (max(x - noise - rough.get(name, 0.0), 0.0) for x in (value, second[name]))
+        shares.append((beyond - left) / max(beyond, NOISE_SHARE * noise))
+    return max(shares)
 
 
 def texture(evidence: Evidence) -> dict[str, float]:

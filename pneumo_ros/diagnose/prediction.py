@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.compare.verdicts import window_sizes
+from pneumo_ros.diagnose.measures import NOISE_SHARE
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.segments import side_by_side
@@ -53,6 +54,12 @@ def windowed(model: Model, runs: Sequence[Run], horizon: float = HORIZON) -> dic
 def pays(before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Whether predictions of some signal got better by a twentieth and none worse by a tenth."""
     return any(after[n] <= BETTER * before[n] for n in before) and harmless(before, after)
+
+
+def removed(before: Mapping[str, float], after: Mapping[str, float]) -> float:
+    """Share that is removed of the mean square error of predictions beyond noise, the mean over signals."""
+    first, second = (typical_error(errors) ** 2 - 1.0 for errors in (before, after))
+    return (first - second) / max(first, NOISE_SHARE)
 
 
 def harmless(before: Mapping[str, float], after: Mapping[str, float]) -> bool:

@@ -21,7 +21,7 @@ from pneumo_ros.diagnose.prediction import (
     no_worse,
     pays,
     recordings,
-    typical_error,
+    removed,
     usual_errors,
     window_logs,
     windowed,
@@ -84,6 +84,7 @@ class Search:
         self.recordings = recordings(self.held.runs, self.horizon)
         self.paying = set[str]()  # effects below the usual size that predictions gain by
         # results are kept, as they are needed again
+        self.refit = lru_cache(2)(self.fitter.refit)
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
         self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
         self.slips = lru_cache(1)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
@@ -162,7 +163,7 @@ class Search:
 
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
         """The refitted model with an effect added, without the effects whose size vanishes, and their names."""
-        new = self.fitter.refit(self.fitter.extended(model, candidate.hypothesis))
+        new = self.refit(self.fitter.extended(model, candidate.hypothesis))
         for name in self.fitter.added(new):  # beside the new effect, older ones may explain as much by less
             new = self.fitter.simplest(new, name, self.horizon)
         new = self.polish(new)
@@ -240,8 +241,7 @@ class Search:
         ranking = self.ranking(model)
         base, held = ranking.base, ranking.held
         candidates = [replace(t, refused=refused.get(t.name, "")) for t in ranking.candidates]
-        if all(candidate.objections for candidate in candidates):
-            candidates = self.asked(model, candidates)
+        candidates = self.asked(model, candidates)
         candidates = self.told_apart(ranking, candidates)
         best = simplest(base, held, candidates)
         others = rivals(base, held, best, candidates) if best else []
@@ -263,16 +263,18 @@ class Search:
         return by_score([replace(one, score=scores.get(one.name, one.score)) for one in candidates])
 
     def asked(self, model: Model, candidates: list[Candidate]) -> list[Candidate]:
-        """The candidates; the best whose size or share alone is too small is asked what it is worth in predictions.
+        """The candidates; what the best one is worth in predictions, if its size or its share alone is objected to.
 
-        What is slow for the usual machine hardly shows in windows of an equation, and adds up over a second.
+        What is slow for the usual machine, or less than a texture, hardly shows in windows of an equation, and adds up
+        over a second. Both models have friction refitted to breakaways, on which predictions depend.
         """
         for k, one in enumerate(candidates):
+            if not one.objections:
+                break
             if replace(one, pays=1.0).objections or one.name in self.paying:
                 continue
-            new = self.fitter.refit(self.fitter.extended(model, one.hypothesis))
-            before, after = typical_error(self.predicted(model)), typical_error(self.predicted(new))
-            tried = replace(one, pays=1.0 - after / before)
+            new = self.polish(self.refit(self.fitter.extended(model, one.hypothesis)))
+            tried = replace(one, pays=removed(self.predicted(model), self.predicted(new)))
             if not tried.objections:
                 self.paying.add(one.name)
             return [*candidates[:k], tried, *candidates[k + 1 :]]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pneumo_ros.diagnose.prediction import pays, recordings, typical_error
+from pneumo_ros.diagnose.prediction import pays, recordings, removed, typical_error
 from pneumo_ros.diagnose.search import Search
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
@@ -28,6 +28,17 @@ def test_what_makes_another_signal_worse_does_not_pay() -> None:
 def test_noise_alone_is_a_typical_error_of_one() -> None:
     assert typical_error({"position_m": 1.0, "pressure_a_pa": 1.0}) == 1.0
     assert typical_error(BEFORE) > 7.0
+
+
+def test_what_is_removed_is_a_share_of_the_squares_beyond_noise() -> None:
+    half = {"position_m": float(np.sqrt(0.5 * (10.0**2 + 1.0))), "pressure_a_pa": 1.0}
+    assert removed(BEFORE, half) == pytest.approx(0.5)
+    assert removed(BEFORE, {"position_m": 1.0, "pressure_a_pa": 1.0}) == 1.0
+    assert removed(half, BEFORE) < 0.0
+
+
+def test_of_noise_alone_hardly_anything_can_be_removed() -> None:
+    assert removed({"position_m": 1.01}, {"position_m": 1.0}) == pytest.approx(0.2, abs=0.01)
 
 
 def lasting(seconds: float) -> Run:

@@ -1,6 +1,7 @@
 """In which order effects are added; a table replaces fits and predictions."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -38,9 +39,14 @@ class Played(Search):
     ) -> None:
         self.progress = lambda share, text: None
         self.slipping = slipping
-        self.order, self.vanish, self.asked = order, vanish or {}, list[tuple[frozenset[str], str]]()
+        self.order, self.vanish, self.tried = order, vanish or {}, list[tuple[frozenset[str], str]]()
         self.start = BASE
-        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, limits=[]))
+
+        def larger(model: Model, h: Hypothesis) -> Model:
+            return model.with_effects([*model.effects, h.name])
+
+        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, extended=larger, limits=[]))
+        self.refit, self.paying = cast(Any, self.fitter.refit), set()
         self.logs = cast(Any, lambda model: {"position": np.full(9, np.log(errors[self.added(model)]))})
         self.slips = cast(Any, lambda model: None)
         self.recordings = np.zeros(9, dtype=np.int64)
@@ -54,7 +60,7 @@ class Played(Search):
         return Step(model, tuple(found), found[0] if found else None, (), {}, {})
 
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
-        self.asked.append((self.added(model), candidate.name))
+        self.tried.append((self.added(model), candidate.name))
         gone = [old for old, new in self.vanish.items() if new == candidate.name and old in model.effects]
         return model.with_effects([*(n for n in model.effects if n not in gone), candidate.name]), gone
 
@@ -85,7 +91,7 @@ def test_an_effect_that_predictions_reject_is_tried_again_after_another_is_added
 def test_it_is_tried_once_beside_each_model() -> None:
     search = Played([LOAD, DROOP], errors(base=10.0, load=11.0, droop=5.0, load_droop=5.5))
     assert names(search) == [DROOP]
-    assert search.asked == [(frozenset(), LOAD), (frozenset(), DROOP), (frozenset([DROOP]), LOAD)]
+    assert search.tried == [(frozenset(), LOAD), (frozenset(), DROOP), (frozenset([DROOP]), LOAD)]
 
 
 def test_what_vanished_beside_another_does_not_come_back() -> None:
@@ -96,6 +102,23 @@ def test_what_vanished_beside_another_does_not_come_back() -> None:
     assert [step.added.name for step in found.steps if step.added] == [LOAD]
     assert [t.refused for t in found.steps[0].candidates if t.name == OFFSET] == [VANISHED]
     assert UNHELPFUL not in {t.refused for step in found.steps for t in step.candidates}
+
+
+@pytest.mark.parametrize(("left", "objected"), [(6.0, False), (8.0, True)])
+def test_what_the_equations_hardly_show_may_pay_in_predictions(left: float, objected: bool) -> None:
+    """The best one is asked, whether or not nothing is objected to a weaker one; half of 10 squared is 7 squared."""
+    search = Played([], errors(base=10.0, load=left, droop=1.0))
+    best, weaker = replace(candidate(LOAD), share=0.0), replace(candidate(DROOP), score=Score(10.0, 10.0))
+    judged = search.asked(search.start, [best, weaker])
+    assert bool(judged[0].objections) == objected
+    assert judged[1] is weaker
+    assert search.paying == (set() if objected else {LOAD})
+
+
+def test_the_best_one_is_not_asked_if_nothing_is_objected() -> None:
+    search = Played([], {})
+    judged = [candidate(DROOP), replace(candidate(LOAD), share=0.0)]
+    assert search.asked(search.start, judged) == judged
 
 
 @pytest.mark.parametrize(("with_it", "added"), [(13.0, []), (6.01, []), (5.9, [STRIBECK])])
