@@ -52,6 +52,7 @@ class Slipping:
     held: Array
     std: dict[str, float]  # of its parameters
     against: float = 0.0  # log likelihood that the equations along the motion lose by it, if the events need it
+    some: bool = False  # whether it was fitted to some of the training events only
 
 
 @dataclass(frozen=True)
@@ -164,9 +165,14 @@ class SlipFits:
         return sorted(result, key=self._left)
 
     def _tried(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
-        """Fitted to some events, and to all of them where it then explains a part of the error of the held-out ones."""
-        few = self._fitted(name, begin, own, some=True)
-        return self._fitted(name, few.model, own) if self.held.share(few.held) >= PART_EXPLAINED else few
+        """Fitted to some events, and then as in `_settled`."""
+        return self._settled(self._fitted(name, begin, own, some=True), own)
+
+    def _settled(self, c: Slipping, own: Sequence[Coordinate]) -> Slipping:
+        """Fitted to all events if it was to some, explains a part of the held-out ones, and nothing contradicts it."""
+        if not c.some or self.held.share(c.held) < PART_EXPLAINED or c.against >= CONTRADICTED:
+            return c
+        return self._fitted(c.name, c.model, own)
 
     def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
         """Fitted from `begin` to all training events, or to `some`, with the parameters `own` of the effect free."""
@@ -175,9 +181,9 @@ class SlipFits:
         refit = refit_segments(begin, self.found.some(begin) if some else self.found.train(begin), list(prior), prior)
         fitted, std = refit.model, {c.name: refit.estimates[c.name].std for c in own}
         train, held = (errors(fitted, events(fitted)) for events in (self.found.train, self.found.held))
-        asked_for = not some and self.held.share(held) >= SHARE_REMOVED
+        asked_for = self.held.share(held) >= SHARE_REMOVED
         loss = self.against(name, {c.name: fitted[c.name] for c in effect}) if asked_for else 0.0
-        return Slipping(name, fitted, train, held, std, loss)
+        return Slipping(name, fitted, train, held, std, loss, some)
 
     def _resized(self, c: Slipping) -> Slipping:
         """A candidate that explains part of the error, restarted from other sizes as long as it explains more.
@@ -196,10 +202,10 @@ class SlipFits:
         own = [one for one in effect if one.name in c.std]
         for _ in range(RESIZINGS):
             if self._explains(c):
-                return c
-            new = self._fitted(c.name, c.model.with_parameters(resized(own, c.model, factor)), own)
+                return self._settled(c, own)
+            new = self._fitted(c.name, c.model.with_parameters(resized(own, c.model, factor)), own, c.some)
             if not self._better(new, c):
-                return c
+                return self._settled(c, own)
             c = new
         self.limits.append(
             f"fits of {c.name} to breakaways still got better after its size was changed {RESIZINGS} times"

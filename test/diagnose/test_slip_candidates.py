@@ -112,12 +112,12 @@ class Stuck(SlipFits):
         FITTED.append((name, some))
         size = next(begin[c.name] for c in coordinates(begin.library.find(name)) if c.is_size)
         error = np.full(40, 1.2 if name != LAG else 1.0 + 1.5 * abs(np.log2(size / TRUE)))
-        return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0)
+        return Slipping(name, begin, error, error, {f"{name}.time_constant": 1e-4}, 0.0 if name == LAG else 60.0, some)
 
 
 @pytest.mark.parametrize("begun", [2e-3, 32e-3, 8e-3])
 def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where another one explains more but contradicts the equations along the motion."""
+    """Also where another one explains more but the equations along the motion contradict it, which ends its fits."""
 
     def begins(alone: Model, _found: Slips, name: str, _own: Sequence[Coordinate]) -> tuple[float, Model]:
         key = next(c.name for c in coordinates(alone.library.find(name)) if c.is_size)
@@ -126,8 +126,11 @@ def test_a_fit_that_explains_part_is_restarted_from_other_sizes(begun: float, mo
     monkeypatch.setattr(slip_candidates, "by_sizes", begins)
     monkeypatch.setitem(BEGUN, LAG, begun)
     nothing = np.empty(0, dtype=np.int64)
+    FITTED.clear()
     tried = Stuck(MODEL, Slips((), (), nothing, nothing), {}, lambda *_: 0.0, Misfit(np.full(40, 6.0))).tried([*BEGUN])
     assert {c.name: c.model[f"{LAG}.time_constant"] for c in tried if c.name == LAG} == {LAG: pytest.approx(TRUE)}
+    assert ("backlash", False) not in FITTED
+    assert not any(c.some for c in tried if c.name == LAG)
 
 
 @pytest.mark.parametrize("lag", [TRUE, 1e-5])
