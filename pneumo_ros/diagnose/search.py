@@ -84,7 +84,7 @@ class Search:
         self.recordings = recordings(self.held.runs, self.horizon)
         self.paying = set[str]()  # effects below the usual size that predictions gain by
         # results are kept, as they are needed again
-        self.refit = lru_cache(2)(self.fitter.refit)
+        self.refit, self.polish = lru_cache(2)(self.fitter.refit), lru_cache(2)(self._polish)
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
         self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
         self.slips = lru_cache(1)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
@@ -175,7 +175,7 @@ class Search:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
 
-    def polish(self, model: Model) -> Model:
+    def _polish(self, model: Model) -> Model:
         """The model with friction refitted to breakaways and reversals, on which predictions depend.
 
         On a force-driven axis only where predictions get no worse, as no pressures limit its motion.

@@ -46,7 +46,8 @@ class Played(Search):
             return model.with_effects([*model.effects, h.name])
 
         self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, extended=larger, limits=[]))
-        self.refit, self.paying = cast(Any, self.fitter.refit), set()
+        self.refit = self.polish = cast(Any, self.fitter.refit)
+        self.paying = set()
         self.logs = cast(Any, lambda model: {"position": np.full(9, np.log(errors[self.added(model)]))})
         self.slips = cast(Any, lambda model: None)
         self.recordings = np.zeros(9, dtype=np.int64)
