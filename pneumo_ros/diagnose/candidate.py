@@ -74,7 +74,8 @@ class Candidate:
         if self.size < MATERIAL and self.pays < self.least:
             found.append(f"its size is only {self.size:.2g} times the usual one")
         if self.partial:
-            found.append(f"{removes(self.share)} of the misfit beyond noise")
+            asked = f", and {removes(self.pays)} of the error of predictions" if self.pays else ""
+            found.append(f"{removes(self.share)} of the misfit beyond noise{asked}")
         if self.lag < RESOLVED:
             found.append("its delay is shorter than a sample, which may be the timing of the recording")
         if self.swing < RESOLVED:

@@ -101,6 +101,10 @@ def test_a_round_whose_effect_vanished_says_so() -> None:
         ({"share": 0.3}, ""),
         ({"share": 0.3, "first": False}, "removes only 30 % of the misfit beyond noise"),
         ({"share": 0.2}, "removes only 20 % of the misfit beyond noise"),
+        (
+            {"share": 0.01, "pays": 0.2},
+            "removes only 1 % of the misfit beyond noise, and removes only 20 % of the error of predictions",
+        ),
         ({"share": -1504.0}, "removes nothing of the misfit beyond noise"),
         ({"lag": 0.5}, "shorter than a sample"),
         ({"swing": 0.6}, "oscillates within two samples"),
