@@ -266,7 +266,8 @@ class Search:
         """The candidates; what the best one is worth in predictions, if its size or its share alone is objected to.
 
         What is slow for the usual machine, or less than a texture, hardly shows in windows of an equation, and adds up
-        over a second. Both models have friction refitted to breakaways, on which predictions depend.
+        over a second. Both models have friction refitted to breakaways, on which predictions depend. Once effects are
+        added, an inexact law of theirs may make another one the best: so all are asked, until one pays.
         """
         for k, one in enumerate(candidates):
             if not one.objections:
@@ -275,9 +276,11 @@ class Search:
                 continue
             new = self.polish(self.refit(self.fitter.extended(model, one.hypothesis)))
             tried = replace(one, pays=removed(self.predicted(model), self.predicted(new)))
+            candidates = [*candidates[:k], tried, *candidates[k + 1 :]]
             if not tried.objections:
                 self.paying.add(one.name)
-            return [*candidates[:k], tried, *candidates[k + 1 :]]
+            if one.first or not tried.objections:
+                break
         return candidates
 
     def unseen(self, model: Model, ranking: Ranking) -> dict[str, float]:

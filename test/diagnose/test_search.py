@@ -116,6 +116,14 @@ def test_what_the_equations_hardly_show_may_pay_in_predictions(left: float, obje
     assert search.paying == (set() if objected else {LOAD})
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_others_are_asked_only_beside_effects_that_were_added(first: bool) -> None:
+    """What is missing alone would be the best one; the laws of added effects may be inexact."""
+    search = Played([], errors(base=10.0, load=9.9, droop=2.0))
+    judged = [replace(candidate(name), share=0.0, first=first) for name in (LOAD, DROOP)]
+    assert [bool(one.objections) for one in search.asked(search.start, judged)] == [True, first]
+
+
 def test_the_best_one_is_not_asked_if_nothing_is_objected() -> None:
     search = Played([], {})
     judged = [candidate(DROOP), replace(candidate(LOAD), share=0.0)]
