@@ -30,17 +30,16 @@ ANY = "steps"  # for an effect of a user
 def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     """Effects that these recordings neither show nor exclude, why not, and the experiment that shows them.
 
-    They would not show a small one, or they speak for the effect, but not enough. Not those that breakaways showed
+    They would not show the usual size, or they speak for the effect, but not enough. Not those that breakaways showed
     after the equations did not. None for an axis without valve or one that turns, for which there are no experiments.
     """
     from pneumo_ros.diagnose.score import MARGIN
-    from pneumo_ros.diagnose.unseen import SMALL
 
     if not outcome.steps or _without_experiments(outcome.model):
         return []
     library, last, found = outcome.model.library, outcome.steps[-1], list[dict[str, str]]()
     asked = f"and {MARGIN:g} are asked"
-    would = f"of {SMALL:g} times its usual size it would gain {{:.1f}} nats in these recordings"
+    would = "of its usual size it would gain {:.1f} nats in these recordings"
     gain = "these recordings gain {:.1f} nats with it"
     told = {name: would.format(max(nats, 0.0)) for name, nats in last.unseen.items()}
     told |= {name: gain.format(nats) for name, nats in last.undecided.items()}

@@ -20,7 +20,7 @@ class Step:
     rivals: tuple[Candidate, ...]
     before: dict[str, float]  # scale over noise by family on held-out runs
     after: dict[str, float]
-    unseen: dict[str, float] = field(default_factory=dict)  # effects these recordings cannot show: nats of a small one
+    unseen: dict[str, float] = field(default_factory=dict)  # effects these recordings cannot show: nats at usual size
 
     @property
     def undecided(self) -> dict[str, float]:

@@ -8,11 +8,10 @@ from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.score import MARGIN
 
 LEAST = 1e-12  # of a variance, in usual sizes squared
-SMALL = 0.3  # usual sizes: recordings that show an effect from there on show it
 
 
 def unseen(screened: Sequence[Hypothesis]) -> dict[str, float]:
-    """By name, the nats that a small effect would gain, for effects where these are fewer than asked.
+    """By name, the nats that an effect of usual size would gain, for effects where these are fewer than asked.
 
     `screened`: every candidate fitted linearly in several shapes, each size to its usual one.
     """
@@ -23,12 +22,12 @@ def unseen(screened: Sequence[Hypothesis]) -> dict[str, float]:
 
 
 def _nats(h: Hypothesis) -> float:
-    """Nats that the effect would gain if each of its sizes were `SMALL`, with whatever sign.
+    """Nats that the effect would gain if each of its sizes were a usual one, with whatever sign.
 
-    With the information H about the sizes it gains tr(H) / 2 times that squared on average, and costs
-    ln det(1 + H) / 2: see `score`. What is uncertain of one point of a profile beside the others does not count.
+    With the information H about the sizes it gains tr(H) / 2 on average and costs ln det(1 + H) / 2: see `score`. What
+    is uncertain of one point of a profile beside the others does not count.
     """
     if not len(h.covariance):
         return 0.0
     information = np.linalg.inv(h.covariance + LEAST * np.eye(len(h.covariance)))
-    return 0.5 * float(SMALL**2 * np.trace(information) - np.linalg.slogdet(np.eye(len(information)) + information)[1])
+    return 0.5 * float(np.trace(information) - np.linalg.slogdet(np.eye(len(information)) + information)[1])
