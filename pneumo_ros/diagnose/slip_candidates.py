@@ -12,7 +12,7 @@ from pneumo_ros.diagnose.candidate import Candidate, removes
 from pneumo_ros.diagnose.coordinates import Coordinate, by_kind, coordinates
 from pneumo_ros.diagnose.hypothesis import Hypothesis, missing
 from pneumo_ros.diagnose.judging import magnitude
-from pneumo_ros.diagnose.measures import together
+from pneumo_ros.diagnose.measures import NOISE_SHARE, together
 from pneumo_ros.diagnose.score import TAIL, Score
 from pneumo_ros.diagnose.slip_starts import Tangents, by_sizes
 from pneumo_ros.diagnose.slips import FEW_PARAMETERS, POOR, Slips, errors, friction_priors, textured, with_values_of
@@ -79,7 +79,7 @@ class Misfit:
     def share(self, after: Array) -> float:
         """Reduction of the quantile to that of other errors, as a share of its excess over noise and texture."""
         second = float(np.quantile(after, self.q))
-        return (self.usual - max(second, self.least)) / max(self.usual - self.least, 0.1)
+        return (self.usual - max(second, self.least)) / max(self.usual - self.least, NOISE_SHARE)
 
 
 def misfits(alone: Model, segments: Segments, force: float) -> list[Misfit]:
