@@ -1,4 +1,9 @@
-"""The current model fitted to the evidence: base parameters and accepted effects, within their priors."""
+"""The current model fitted to the evidence: base parameters and accepted effects, within their priors.
+
+The measured acceleration is a factor of a mass, and noisy: least squares that counted residuals in a fixed unit would
+draw the mass towards zero (attenuation). Each model's residual counts in the noise that its own mass amplifies, which
+is Deming's regression and consistent (Fuller 1987, Measurement error models, 1.3).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -68,14 +73,45 @@ def residuals(evidence: Evidence, model: Model, variants: Sequence[Mapping[str, 
     return evidence.residuals(model, vectors(model, variants))
 
 
+class OwnNoise:
+    """Residuals in units of the noise that each model's own mass amplifies.
+
+    What `model` leaves beyond that noise, in `residual` (residuals,) over that of the windows, has another cause: a
+    heavier load does not amplify it.
+    """
+
+    def __init__(self, evidence: Evidence, model: Model, residual: Array) -> None:
+        self.evidence = evidence
+        self.load = evidence.load(model)
+        self.here = evidence.by_load(self.load)
+        self.square = family_scales(evidence, residual / self.here)[evidence.family] ** 2
+
+    def of(self, models: Sequence[Model], found: Array) -> Array:
+        """The same of other models, from their residuals (models, residuals) over the noise of the windows."""
+        loads = [self.evidence.load(one) for one in models]
+        factors = {load: self.factor(load) for load in {*loads}}
+        return np.stack([own / factors[load] for own, load in zip(found, loads, strict=True)])
+
+    def factor(self, load: float) -> Array:
+        """Noise (residuals,) where the mass that moves at once is `load` times as large, over that of the windows."""
+        grown = (self.evidence.by_load(load) / self.here) ** 2
+        return np.asarray(self.here * np.sqrt(1.0 + (grown - 1.0) / self.square))
+
+
 def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array]:
-    """Residual (residuals,) of `model`, and its derivative (residuals, free) by each free parameter per prior."""
+    """Residual (residuals,) of `model`, and its derivative (residuals, free) by each free parameter per prior.
+
+    Both in the noise of the windows; a parameter that amplifies it counts as `OwnNoise` says.
+    """
     ends = np.array([model.specification(n).high for n in known.names])
     here = np.array([model[n] for n in known.names])
     steps = small_step(known.step, here, known.centre, FINE)
     steps = np.where(here + steps > ends, -steps, steps)
-    r = residuals(evidence, model, [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))])
-    return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
+    variants = [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))]
+    r = residuals(evidence, model, variants)
+    own = OwnNoise(evidence, model, r[0])
+    q = own.here * own.of([model.with_parameters(variant) for variant in variants], r)
+    return r[0], np.asarray(((q[1:] - q[0]) / (steps / known.prior)[:, None]).T)
 
 
 def fit_base(
@@ -85,9 +121,9 @@ def fit_base(
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
     model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
-    cost most. Rounds end when slopes promise no further gain that are new, or that kept what they promised; at the
-    latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of them. A round pays that gains more
-    than `share` of the loss, and half a nat.
+    cost most. Rounds end when slopes promise no further gain that are new, or that kept what they promised in the
+    same noise; at the latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of them. A round pays
+    that gains more than `share` of the loss, and half a nat.
     """
     descent = _Descent(evidence, known, model, share)
     for taken in range(1, iterations + 1):
@@ -101,12 +137,12 @@ def fit_base(
                 break
             if gain < FAITHFUL * promised:
                 break
-            kept = kept and gain <= promised / FAITHFUL
+            kept = kept and gain <= promised / FAITHFUL and descent.in_the_same_noise()
     return Fitted(descent.model, iterations, False)
 
 
 class _Descent:
-    """A model on its way to the best fit: its residual and the latest slopes."""
+    """A model on its way to the best fit: its residual and the latest slopes, in the noise of `own`."""
 
     def __init__(self, evidence: Evidence, known: Known, model: Model, share: float) -> None:
         self.evidence, self.known, self.model, self.share = evidence, known, model, share
@@ -116,7 +152,13 @@ class _Descent:
 
     def renew(self) -> None:
         """Compute the slopes at the current model."""
-        self.residual, self.slopes = slopes(self.evidence, self.model, self.known)
+        residual, steep = slopes(self.evidence, self.model, self.known)
+        self.own = OwnNoise(self.evidence, self.model, residual)
+        self.residual, self.slopes = residual / self.own.here, steep / self.own.here[:, None]
+
+    def in_the_same_noise(self) -> bool:
+        """Whether the model at hand amplifies noise as that of the slopes does."""
+        return self.evidence.load(self.model) == self.own.load
 
     def little(self, gain: float) -> bool:
         """Whether a gain in log likelihood is too small for another round."""
@@ -149,7 +191,8 @@ class _Descent:
         values = [np.clip(theta + share * x * prior, self.low, self.high) for share in shares]
         values = [physical(self.model, names, own) for own in values]
         variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
-        found = residuals(self.evidence, self.model, variants)
+        models = [self.model.with_parameters(variant) for variant in variants]
+        found = self.own.of(models, residuals(self.evidence, self.model, variants))
         offsets = [(own - self.known.centre) / prior for own in values]
         objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
         return list(zip(objectives, variants, found, strict=True))
@@ -184,15 +227,18 @@ def base_fit(evidence: Evidence, whole: Model, model: Model, known: Known) -> Ba
     return BaseFit(model, held, known.names, known.prior, known.offset(model), evidence, r, J)
 
 
-def at_best(base: BaseFit, here: Array) -> tuple[Array, Array, float]:
-    """Best shift of the base parameters given a candidate's residual, the residual after it, and its log likelihood."""
+def at_best(base: BaseFit, here: Array, unit: Array | float = 1.0) -> tuple[Array, Array, float]:
+    """Best shift of the base parameters given a candidate's residual, the residual after it, and its log likelihood.
+
+    unit (residuals,): the noise in which they count, where the candidate amplifies it.
+    """
     after, shift = here, np.zeros(len(base.names))
     for _ in range(4):
-        scale = family_scales(base.evidence, after)
-        weight = weights(base.evidence, after, scale)
+        scale = family_scales(base.evidence, after / unit)
+        weight = weights(base.evidence, after / unit, scale) / unit
         shift, _A, _bread = solve(base.slopes, here, weight, np.ones(len(base.names)), base.offset)
         after = here + base.slopes @ shift
-    value = log_likelihood(base.evidence, after) - strain(shift + base.offset)
+    value = log_likelihood(base.evidence, after / unit) - strain(shift + base.offset)
     return shift, after, value
 
 

@@ -21,7 +21,7 @@ from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, follow, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import REST
-from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, drive_along, moving_mass
+from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
@@ -45,7 +45,8 @@ class Evidence:
     """
 
     def __init__(self, model: Model, runs: Sequence[Run]) -> None:
-        self.mass, self.piston = moving_mass(model), model["piston.mass"]
+        self.piston = model["piston.mass"]
+        self.mass = self.piston + added_mass(model)
         self._index([RunEvidence(model, run, i) for i, run in enumerate(runs)])
 
     def _index(self, by_run: list["RunEvidence"]) -> None:
@@ -82,10 +83,16 @@ class Evidence:
         States of effects are driven along the measured motion: they may ring with its noise, or take it in, as a load
         behind a play that does not follow it (`amplification`).
         """
-        rigid = without_states(model)
-        grown = ((self.piston + moving_mass(rigid) - rigid["piston.mass"]) / self.mass) ** 2
-        noise = self.noise * np.sqrt(1.0 + self.by_mass**2 * (grown - 1.0))
+        noise = self.noise * self.by_load(self.load(model))
         return np.asarray(noise * self.amplification(model)[self.run, self.family])
+
+    def load(self, model: Model) -> float:
+        """Mass that moves with the piston at once in `model`, over that in the model of the windows."""
+        return (self.piston + added_mass(without_states(model))) / self.mass
+
+    def by_load(self, load: float) -> Array:
+        """Factor (residuals,) by which the noise grows where the mass that moves at once is `load` times as large."""
+        return np.asarray(np.sqrt(1.0 + self.by_mass**2 * (load**2 - 1.0)))
 
     def amplification(self, model: Model) -> Array:
         """Factor (runs, families) by which the states of effects in `model` amplify the sensors' noise in each run."""

@@ -54,7 +54,7 @@ def families(model: Model, frame: Frame, index: int) -> list[Family]:
     for width in () if model.imposed else (longer * w for w in MOMENTUM_WINDOWS):
         bump = Bump.of(width, run.sample_time)
         family = _family("momentum", width, index, run, bump, momentum.noise(bump), momentum.usable(bump))
-        found.append(replace(family, by_mass=momentum.noise_by_position(bump)))
+        found.append(replace(family, by_mass=momentum.noise_by_acceleration(bump)))
     for chamber in run.sensed(model.chambers):
         equation = Balance(model, chamber)
         rate, steep = claimed[:, equation.column], equation.steepness(run, states)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.basefit import at_best, relief_of
+from pneumo_ros.diagnose.basefit import OwnNoise, at_best, relief_of
 from pneumo_ros.diagnose.freedom import profile_slopes
 from pneumo_ros.diagnose.hypothesis import (
     COORDINATE_PROBE,
@@ -34,7 +34,8 @@ def refine(
     Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
     best = [replace(h, likelihood=-np.inf, slopes=profile_slopes(base, h.name, h.coordinates)) for h in hypotheses]
-    begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses)
+    units = _Units(base)
+    begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses, units)
     moving = list(range(len(best)))
     for _k in range(iterations):
         variants: list[dict[str, float]] = []
@@ -48,22 +49,35 @@ def refine(
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
         own = [residual[spans[i] : spans[i] + 1 + len(begins[i])] for i in moving]
         with ThreadPoolExecutor(2) as pool:
-            taken = list(pool.map(lambda i, r: _advanced(base, best[i], begins[i], r), moving, own))
+            taken = list(pool.map(lambda i, r: _advanced(base, best[i], begins[i], r, units), moving, own))
         for i, (h, u, _) in zip(moving, taken, strict=True):
             best[i], begins[i] = h, u
         moving = [i for i, (_, _, settles) in zip(moving, taken, strict=True) if not settles]
     return best
 
 
-def _advanced(base: BaseFit, h: Hypothesis, u: Array, residual: Array) -> tuple[Hypothesis, Array, bool]:
+class _Units:
+    """The noise in which a candidate's residual counts, over that of the base: a load amplifies it."""
+
+    def __init__(self, base: BaseFit) -> None:
+        self.base, self.own = base, OwnNoise(base.evidence, base.model, base.residual)
+
+    def at(self, h: Hypothesis, u: Array) -> Array | float:
+        """Of a candidate at u: (residuals,), or 1."""
+        load = self.base.evidence.load(self.base.everything.with_parameters(_values(h, u)))
+        return 1.0 if load == self.own.load else np.asarray(self.own.factor(load) / self.own.here)
+
+
+def _advanced(base: BaseFit, h: Hypothesis, u: Array, residual: Array, units: _Units) -> tuple[Hypothesis, Array, bool]:
     """The better of a hypothesis and of itself at u, where to try it next, and whether it has settled.
 
     residual (1 or 1 + coordinates, residuals): at u, and at its probes if the slopes are not kept.
     """
-    C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual)
-    tried = _judge(base, h, u, residual[0], C)
+    unit = units.at(h, u)
+    C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual, units)
+    tried = _judge(base, h, u, residual[0], C, unit)
     better = tried.likelihood > h.likelihood
-    found, begin = (tried, _next(base, tried, C, residual[0])) if better else (h, 0.5 * (u + h.u))
+    found, begin = (tried, _next(base, tried, C, residual[0], unit)) if better else (h, 0.5 * (u + h.u))
     little = 0.0 < tried.likelihood - h.likelihood < 0.3
     return found, begin, bool(little or np.max(np.abs(begin - found.u)) < 3e-3)
 
@@ -77,13 +91,18 @@ def _is_profile(h: Hypothesis) -> bool:
     return len(h.u) > FEW_SIZES and all(c.is_size and not c.logarithmic for c in h.coordinates)
 
 
-def _slopes(h: Hypothesis, u: Array, residual: Array) -> Array:
-    """Derivatives (residuals, coordinates) from the residuals at u and at each of its probes."""
-    moved = np.array([v[j] - u[j] for j, v in enumerate(_probes(h, u))])
-    return np.asarray(((residual[1:] - residual[0]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T)
+def _slopes(h: Hypothesis, u: Array, residual: Array, units: _Units) -> Array:
+    """Derivatives (residuals, coordinates) from the residuals at u and at each of its probes.
+
+    With what a change of the noise in which residuals count makes.
+    """
+    probes, unit = _probes(h, u), units.at(h, u)
+    there = np.stack([r * (unit / units.at(h, v)) for r, v in zip(residual[1:], probes, strict=True)])
+    moved = np.array([v[j] - u[j] for j, v in enumerate(probes)])
+    return np.asarray(((there - residual[0]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T)
 
 
-def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
+def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis], units: _Units) -> list[Array]:
     """For each hypothesis the best of a few sizes: an effect that is linear near neutral may not be so farther away."""
     options: list[list[Array]] = []
     for h in hypotheses:
@@ -96,12 +115,13 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis]) -> list[Array]:
             own += [np.where(linear, share * np.where(h.u < 0.0, -1.0, 1.0), h.u) for share in (1.0, 0.3)]
             own += [np.where(fading, h.u + shift, h.u) for shift in (-0.7, 0.7, 1.4) if fading.any()]
         options.append([np.array([c.clip(x) for c, x in zip(h.coordinates, u, strict=True)]) for u in own])
-    variants = [_values(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
+    each = [(h, u) for h, own in zip(hypotheses, options, strict=True) for u in own]
+    variants = [_values(h, u) for h, u in each]
     if not variants:
         return []
     residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
     with ThreadPoolExecutor(2) as pool:
-        likelihood = list(pool.map(lambda r: at_best(base, r)[2], residual))
+        likelihood = list(pool.map(lambda r, one: at_best(base, r, units.at(*one))[2], residual, each))
     found, at = [], 0
     for own in options:
         found.append(own[int(np.argmax(likelihood[at : at + len(own)]))])
@@ -132,13 +152,13 @@ def _system(base: BaseFit, h: Hypothesis, u: Array, C: Array) -> tuple[Array, Ar
     return np.concatenate([base.slopes, C], axis=1), ridge, np.concatenate([base.offset, u])
 
 
-def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hypothesis:
+def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array, unit: Array | float) -> Hypothesis:
     """The hypothesis at u, base parameters at their best there."""
     p = len(base.names)
-    shift, after, value = at_best(base, here)
+    shift, after, value = at_best(base, here, unit)
     value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
     K, ridge, _offset = _system(base, h, u, C)
-    w = weights(base.evidence, after, family_scales(base.evidence, after))
+    w = _weights(base, after, unit)
     A = K * w[:, None]
     of_all = of_sizes = covariances(base, A, w * after, ridge)
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
@@ -154,13 +174,17 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array) -> Hyp
     )
 
 
-def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array) -> Array:
+def _weights(base: BaseFit, residual: Array, unit: Array | float) -> Array:
+    return np.asarray(weights(base.evidence, residual / unit, family_scales(base.evidence, residual / unit)) / unit)
+
+
+def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array, unit: Array | float) -> Array:
     """u of the next Gauss-Newton step, within the bounds."""
     K, ridge, offset = _system(base, h, h.u, C)
     after, first = h.residual, len(base.names)
     step = np.zeros(len(h.u))
     for _ in range(3):
-        w = weights(base.evidence, after, family_scales(base.evidence, after))
+        w = _weights(base, after, unit)
         x = bounded_step(h, K, here, w, ridge, offset)
         after, step = here + K @ x, x[first:]
     logs = np.array([c.logarithmic for c in h.coordinates])

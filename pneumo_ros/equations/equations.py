@@ -52,7 +52,12 @@ def straight(function: Callable[..., Array], *signals: Array) -> Array:
 
 def moving_mass(model: Model) -> float:
     """Mass that moves with the piston at once [kg]: its own, and what effects add at rest."""
-    return model["piston.mass"] + float(model.outputs(model.state()[None])["added_mass"][0])
+    return model["piston.mass"] + added_mass(model)
+
+
+def added_mass(model: Model) -> float:
+    """The part of it that effects add [kg]."""
+    return float(model.outputs(model.state()[None])["added_mass"][0])
 
 
 def drive_along(model: Model, run: Run, states: Array) -> Array:
@@ -92,9 +97,14 @@ class Momentum:
         return np.asarray(np.sqrt(np.sum(np.square(parts), axis=0)))
 
     def noise_by_position(self, bump: Bump) -> Array:
-        """Standard deviation (windows,) by the noise of the position alone, which the moving mass amplifies."""
+        """Standard deviation (windows,) by the noise of the position alone, in acceleration and friction."""
         by_position = bump.noise([(bump.second, np.ones(len(self.run))), (bump.first, self._steep)])
         return np.asarray(self.run.noise["position_m"] * moving_mass(self.model) * by_position)
+
+    def noise_by_acceleration(self, bump: Bump) -> Array:
+        """The part (windows,) of it that is in proportion to the moving mass."""
+        windows = len(bump.centres(len(self.run)))
+        return np.full(windows, self.run.noise["position_m"] * moving_mass(self.model) * np.linalg.norm(bump.second))
 
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""

@@ -20,6 +20,7 @@ NAMES = tuple(
     )
 )
 CENTRE, PRIOR = np.array([203.5, 0.0, 0.0]), np.array([6.0, 900.0, 1800.0])
+NO_LOAD: dict[str, Any] = {"load": lambda model: 1.0, "by_load": lambda load: np.ones(1)}
 
 
 def test_a_size_at_the_end_of_its_range_does_not_hold_what_trades_with_it() -> None:
@@ -36,6 +37,7 @@ def test_a_size_at_the_end_of_its_range_does_not_hold_what_trades_with_it() -> N
     evidence: Any = SimpleNamespace(
         names=("momentum 100 ms",),
         family=np.zeros(400, dtype=int),
+        **NO_LOAD,
         residuals=lambda model, values: measured - values[:, columns] @ slopes.T,
     )
     known = Known(NAMES, CENTRE, PRIOR, np.array([0.05, 0.15, 0.3]))
@@ -57,7 +59,12 @@ def test_a_slope_is_that_at_the_value_also_where_it_is_small_beside_its_default(
     """The default gain is 2 1/V; a valve of 0 to 10 V has 0.01 1/V, and the flow bends over it."""
     axis = load_model("axis").with_parameters({GAIN: 0.01})
     column, volts = list(axis.parameters).index(GAIN), np.array([1.0, 100.0])
-    evidence: Any = SimpleNamespace(residuals=lambda model, values: np.arctan(values[:, column, None] * volts))
+    evidence: Any = SimpleNamespace(
+        names=("momentum 100 ms",),
+        family=np.zeros(2, dtype=int),
+        **NO_LOAD,
+        residuals=lambda model, values: np.arctan(values[:, column, None] * volts),
+    )
     known = Known((GAIN,), np.array([0.1]), np.array([1.0]), np.array([0.0005]))
     true = volts / (1.0 + (0.01 * volts) ** 2)
     assert np.allclose(slopes(cast(Evidence, evidence), axis, known)[1][:, 0], true, rtol=0.01)
@@ -70,6 +77,7 @@ class Alternating:
     """
 
     names, family = ("momentum 100 ms",), np.zeros(1000, dtype=int)
+    load, by_load = (staticmethod(one) for one in NO_LOAD.values())
 
     def __init__(self) -> None:
         self.calls = 0
@@ -130,7 +138,49 @@ def test_slopes_that_keep_their_promise_are_made_once() -> None:
         made.append(len(values))
         return (values[:, COLUMN, None] - 71.0) * np.linspace(1.0, 9.0, 400)
 
-    evidence: Any = SimpleNamespace(names=("momentum 100 ms",), family=np.zeros(400, dtype=int), residuals=residuals)
+    fake = SimpleNamespace(names=("momentum 100 ms",), family=np.zeros(400, dtype=int), residuals=residuals, **NO_LOAD)
+    evidence: Any = fake
     fitted = fit_base(cast(Evidence, evidence), axis, known)
     assert abs(fitted.model[COULOMB] - 71.0) < 0.01
     assert made == [2, 1], "slopes, and the whole step"
+
+
+MASS, PISTON, HUNG = "payload_mass.mass_added", 5.0, 4.5  # kg
+
+
+def weighed(excess: float) -> tuple[float, float]:
+    """A load found and its slope-wise best change, both in kg, from accelerations with as much noise as motion.
+
+    excess: force that nothing explains, over the noise of the force sensor.
+    """
+    axis = load_model("axis")
+    model = axis.with_effects([*axis.effects, "payload_mass"], {MASS: 1.0})
+    column, rng = list(model.parameters).index(MASS), np.random.default_rng(7)
+    true, sensor = rng.normal(0.0, 1.0, 20_000), 0.1
+    seen = true + rng.normal(0.0, 0.5, len(true))
+    force = (PISTON + HUNG) * true + sensor * (1.0 + excess) * rng.normal(0.0, 1.0, len(true))
+    noise = np.hypot(0.5 * PISTON, sensor)
+    share = 0.5 * PISTON / noise
+    evidence: Any = SimpleNamespace(
+        names=("momentum 100 ms",),
+        family=np.zeros(len(true), dtype=int),
+        load=lambda model: (PISTON + model[MASS]) / PISTON,
+        by_load=lambda load: np.sqrt(1.0 + share**2 * (load**2 - 1.0)) * np.ones(len(true)),
+        residuals=lambda model, values: ((PISTON + values[:, [column]]) * seen - force) / noise,
+    )
+    known = Known((MASS,), np.array([0.0]), np.array([20.0]), np.array([0.01]))
+    found = fit_base(cast(Evidence, evidence), model, known).model
+    r, steep = slopes(cast(Evidence, evidence), found, known)
+    return found[MASS], float(-(r @ steep[:, 0]) / (steep[:, 0] @ steep[:, 0]) * known.prior[0])
+
+
+def test_noise_of_the_acceleration_draws_no_mass_towards_zero() -> None:
+    """Least squares in a fixed unit would find 5 + m = 9.5 / (1 + 0.25), a load of 2.6 kg."""
+    found, further = weighed(0.0)
+    assert abs(found - HUNG) < 0.15
+    assert abs(further) < 0.05, "the slopes disagree with the fit"
+
+
+def test_what_exceeds_the_noise_makes_no_mass_heavier() -> None:
+    """A force of 50 times the sensor's noise, as large as what the noise of the acceleration leaves."""
+    assert abs(weighed(50.0)[0] - HUNG) < 0.6
