@@ -148,7 +148,8 @@ class Fitter:
         without, residuals = ([part.residual(model) for part in parts] for model in (old, new))
         scoring = Scoring(*parts)
         scoring.measure(old, *without)
-        gained = scoring.evidence(new, *residuals) - scoring.evidence(old, *without)
+        after, before = scoring.at(new, *residuals), scoring.at(old, *without)
+        gained = after.evidence - scoring.in_noise_of(after, old, before).evidence
         strained = strain(self.known(new).offset(new)) - strain(self.known(old).offset(old))
         return float(gained.sum() if self._held_runs else gained[0]) - strained
 

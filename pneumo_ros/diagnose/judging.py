@@ -52,7 +52,8 @@ def judged(
     if not hypotheses:
         return found
     scoring.measure(base.everything, nothing.residual, held.residual)
-    alone = scoring.best(base.everything, fits, [(nothing.residual, held.residual, nothing.shift)])
+    own = nothing.residual, held.residual, nothing.shift
+    alone = scoring.best(base.everything, fits, [own, moved(own, fits, -nothing.shift)])  # one step, or as fitted
     models = [base.everything.with_parameters(h.values) for h in hypotheses]
     for part in scoring.parts:
         part.amplify(models)
@@ -65,8 +66,9 @@ def judged(
     ]
     ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
     alone = scoring.best(base.everything, fits, ways, threads=2)
-    unaided = surprise(base, alone.fit[2])
+    unaided, bare = surprise(base, alone.fit[2]), alone
     for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
+        alone = scoring.in_noise_of(beside.best, base.everything, bare)
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h.name)  # a texture that its points explain is nothing that was known
         plain = _plain(scoring, fits, h, alone)
@@ -169,13 +171,13 @@ def size_in(model: Model, name: str) -> float:
     return magnitude(own, np.array([c.u(model[c.name]) for c in own]))
 
 
-def undetermined(model: Model, name: str, std: Mapping[str, float]) -> bool:
-    """Whether all sizes of an effect of the model may be zero: each is within two of its deviations `std` of neutral.
+def undetermined(model: Model, name: str, std: Mapping[str, float], within: float = NONE_WITHIN) -> bool:
+    """Whether all sizes of an effect of the model may be zero: each is `within` two of its deviations `std` of neutral.
 
     Sizes of infinite deviation, on which there are no data, or without one, as those of another form, say nothing.
     """
     fading = [c for c in coordinates(model.library.find(name)) if c.is_size and std.get(c.name, np.inf) < np.inf]
-    return bool(fading) and all(abs(model[c.name] - (c.neutral or 0.0)) <= NONE_WITHIN * std[c.name] for c in fading)
+    return bool(fading) and all(abs(model[c.name] - (c.neutral or 0.0)) <= within * std[c.name] for c in fading)
 
 
 def lag(h: Hypothesis, sample_time: float) -> float:

@@ -12,7 +12,7 @@ Windows of one width overlap by three quarters: every second one is nearly indep
 equation seen through windows of two widths counts half by each.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -61,15 +61,20 @@ class Score:
         return self.train + self.held
 
 
+Noise = tuple[float, float, float]  # size and correlation time of a discrepancy, scale of the noise
 Fit = tuple[Array, Array, Array]  # residuals of training and held-out runs over noise, shift of base parameters
 
 
 @dataclass(frozen=True)
 class Best:
-    """Log evidence (2,) of training and held-out runs, and the fit that is best for all of them."""
+    """Log evidence (2,) of training and held-out runs, and the fit that is best for all of them.
+
+    noise: by family, size and correlation time of its discrepancy and the scale of the sensors' noise.
+    """
 
     evidence: Array
     fit: Fit
+    noise: dict[str, Noise]
 
 
 def moved(fit: Fit, fits: tuple[BaseFit, BaseFit], step: Array) -> Fit:
@@ -84,7 +89,7 @@ class Scoring:
         self.parts = (train, held)
         self.names = tuple(dict.fromkeys([*train.names, *held.names]))
         # Size and correlation time of the discrepancy and scale of the noise, by family; empty: each model has its own.
-        self.usual = dict[str, tuple[float, float, float]]()
+        self.usual = dict[str, Noise]()
 
     def measure(self, model: Model, *residuals: Array) -> None:
         """Take the scale of the sensors' noise from what `model` leaves: it is the same for models compared to it."""
@@ -98,11 +103,33 @@ class Scoring:
         """
         return _evidence(self._families(model, residuals))
 
-    def _families(self, model: Model, residuals: Sequence[Array]) -> list["_Family"]:
+    def at(self, model: Model, train: Array, held: Array) -> Best:
+        """The log evidence of what `model` leaves in training and held-out runs, its base parameters as they are."""
+        families = self._families(model, (train, held))
+        noise = {family.name: family.best for family in families}
+        return Best(_evidence(families), (train, held, np.zeros(0)), noise)
+
+    def in_noise_of(self, other: Best, model: Model, best: Best) -> Best:
+        """A model's best fit; each family in the noise that another model found, where that makes it more likely.
+
+        All have the same sensors. Where the noise may as well be a little larger and the discrepancy smaller, the
+        model that came upon it gains hundreds of nats, which are no merit of it.
+        """
+        evidence, noise = best.evidence.copy(), dict(best.noise)
+        own = self._families(model, best.fit[:2])
+        for one, again in zip(own, self._families(model, best.fit[:2], other.noise), strict=True):
+            gained = again.evidence() - one.evidence()
+            if gained.sum() > 0.0:
+                evidence, noise[one.name] = evidence + gained, again.best
+        return Best(evidence, best.fit, noise)
+
+    def _families(
+        self, model: Model, residuals: Sequence[Array], usual: Mapping[str, Noise] | None = None
+    ) -> list["_Family"]:
         """The families of the training runs' residuals, or of those and the held-out runs'."""
-        parts = self.parts[: len(residuals)]
+        usual, parts = usual or self.usual, self.parts[: len(residuals)]
         levels = [part.noise_of(model) for part in parts]
-        return [_Family(name, parts, residuals, levels, self.usual.get(name)) for name in self.names]
+        return [_Family(name, parts, residuals, levels, usual.get(name)) for name in self.names]
 
     def best(self, model: Model, fits: tuple[BaseFit, BaseFit], starts: Sequence[Fit], threads: int = 1) -> Best:
         """The log evidence of a fit, its base parameters moved to where that of all runs is largest.
@@ -119,7 +146,8 @@ class Scoring:
         def valued(one: Fit) -> tuple[float, Best, list[_Family]]:
             families = self._families(model, one[:2])
             found = _evidence(families)
-            return float(found.sum()) - strain(one[2] + fits[0].offset), Best(found, one), families
+            best = Best(found, one, {family.name: family.best for family in families})
+            return float(found.sum()) - strain(one[2] + fits[0].offset), best, families
 
         with ThreadPoolExecutor(threads) as pool:
             best = max(pool.map(valued, starts), key=lambda one: one[0])
@@ -154,7 +182,7 @@ class _Family:
         parts: Sequence[Evidence],
         residuals: Sequence[Array],
         levels: Sequence[Array],
-        usual: tuple[float, float, float] | None,
+        usual: Noise | None,
     ) -> None:
         self.name, self.usual, self.known = name, usual or USUAL, AMPLIFIED if usual else STATED
         self.single = name == "breakaway"  # without correlation
@@ -170,7 +198,7 @@ class _Family:
             )
         noise = np.concatenate([one[2] for some in self.series for one in some])
         self.median = float(np.median(noise)) if len(noise) else 0.0
-        self._known: dict[tuple[float, float, float], tuple[Array, Array]] = {}
+        self._known: dict[Noise, tuple[Array, Array]] = {}
 
     def evidence(self) -> Array:
         """Log evidence (parts,) at the discrepancy and the noise of the greatest likelihood."""
@@ -182,7 +210,7 @@ class _Family:
         return found
 
     @cached_property
-    def best(self) -> tuple[float, float, float]:
+    def best(self) -> Noise:
         """Size and correlation time of the discrepancy, and scale of the noise, of the greatest likelihood."""
         return self._best() if self.median else USUAL
 
@@ -197,7 +225,7 @@ class _Family:
             matrix, gradient = matrix + self.weight * A.T @ A, gradient + self.weight * A.T @ both[:, 0]
         return matrix, gradient
 
-    def _best(self) -> tuple[float, float, float]:
+    def _best(self) -> Noise:
         times, scales = ((0.0,), (BREAKAWAY_NOISE,)) if self.single else (TIMES, NOISE)
         (size, time, near), scale = self.usual, scales[len(scales) // 2]
         for _ in range(ROUNDS):
@@ -210,14 +238,14 @@ class _Family:
             near = scale
         return (size, time, scale) if self.single else self._exact(size, time, scale)
 
-    def _exact(self, size: float, time: float, scale: float) -> tuple[float, float, float]:
+    def _exact(self, size: float, time: float, scale: float) -> Noise:
         """Size of the discrepancy and scale of the noise of the greatest likelihood, between the steps of the options.
 
         Both together: a fast discrepancy and more noise nearly are the same, and differ by hundreds of nats in what is
         left without the cost of noise.
         """
 
-        def at(move: Array) -> tuple[float, float, float]:
+        def at(move: Array) -> Noise:
             larger = float(np.exp(np.log(2.0) * move[1])) if size > 0.0 else 1.0
             scaled = scale + float(move[0]) * FINE
             return size * larger, time, min(max(scaled, NOISE[0]), NOISE[-1])
@@ -237,8 +265,8 @@ class _Family:
         if at not in self._known:
             values = np.zeros((2, len(self.series)))
             for k, some in enumerate(self.series):
-                for residual, level, noise, seconds, run in some:
-                    both = _log_likelihood(residual, scale * level, noise, seconds, run, size * self.median, time, TAIL)
+                for residual, level, _noise, seconds, run in some:
+                    both = _log_likelihood(residual, scale * level, level, seconds, run, size * self.median, time, TAIL)
                     values[:, k] += self.weight * np.array(both)
             self._known[at] = values[0], values[1]
         return self._known[at]
@@ -285,9 +313,9 @@ def _top(value: Callable[[Array], float], count: int) -> Array:
 def _log_likelihood(residual, noise, usual, time, run, size, correlation, tail):  # type: ignore[no-untyped-def]
     """Of residuals (n,) with `noise` (n,); and the same without what noise alone costs, where `usual` (n,) is its unit.
 
-    A model that amplifies the noise of the sensors less explains no more than another one. Its discrepancy, however, is
-    not counted in units of that noise: a heavy piston would make any force look small. Most windows are evenly spaced,
-    so that the exponential is kept; logarithms of factors (`SAFE`) are taken together.
+    A model that amplifies the noise of the sensors less explains no more than another one, and its discrepancy counts
+    in units of that noise: a force that nothing explains moves the piston, and is seen by the noisy motion. Most
+    windows are evenly spaced, so that the exponential is kept; logarithms of factors (`SAFE`) are taken together.
     """
     total, beyond, mean, variance, full = 0.0, 0.0, 0.0, 0.0, size * size
     edge, gap, kept = tail * tail, 0.0, 1.0

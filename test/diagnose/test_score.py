@@ -13,7 +13,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import uneven
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.judging import judged
-from pneumo_ros.diagnose.score import Scoring, log_prior, moved, occam, surprise
+from pneumo_ros.diagnose.score import Best, Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model, load_model
 
 Array = NDArray[np.float64]
@@ -95,6 +95,29 @@ def test_a_mass_that_amplifies_noise_is_judged_by_its_own_noise(seed: int) -> No
     assert abs(float(change.sum())) < 1e-6
     missed = scoring.evidence(heavy, loud, loud) - scoring.evidence(MODEL, quiet + slow(seed, 2.0), quiet)
     assert float(missed.sum()) > 100.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_discrepancy_counts_in_the_noise_that_a_mass_amplifies(seed: int) -> None:
+    """A load of the piston's mass that is there: all of its residual is twice as large, noise and rest alike."""
+    heavy = MODEL.with_parameters({"piston.mass": 2.0 * MODEL["piston.mass"]})
+    scoring, small = Scoring(evidence(), evidence()), noise(seed) + slow(seed, 0.5, 0.03)
+    change = scoring.evidence(heavy, 2.0 * small, 2.0 * small) - scoring.evidence(MODEL, small, small)
+    assert abs(float(change.sum())) < 1.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_scale_of_the_noise_that_only_a_candidate_found_is_no_merit_of_it(seed: int) -> None:
+    """More noise and a fast discrepancy are nearly the same: 2 % more of it was worth hundreds of nats."""
+    left, parts = noise(seed), (evidence(), evidence())
+    scoring = Scoring(*parts)
+    scoring.usual = {"momentum 100 ms": (0.5, 0.03, 0.9)}  # as the model without the candidate came upon it
+    own = Best(scoring.evidence(MODEL, left, left), (left, left, np.zeros(0)), dict(scoring.usual))
+    other = replace(own, noise={"momentum 100 ms": (0.0, 0.03, 1.0)})
+    again = scoring.in_noise_of(other, MODEL, own)
+    assert float((again.evidence - own.evidence).sum()) > 100.0
+    assert again.noise["momentum 100 ms"][0] < 0.1
+    assert float((scoring.in_noise_of(own, MODEL, again).evidence - again.evidence).sum()) == 0.0
 
 
 @pytest.mark.parametrize("seed", range(6))
