@@ -28,7 +28,7 @@ from pneumo_ros.diagnose.prediction import (
 )
 from pneumo_ros.diagnose.refining import held_out, refine
 from pneumo_ros.diagnose.rivals import rivals, simplest, twins
-from pneumo_ros.diagnose.score import occam
+from pneumo_ros.diagnose.score import MARGIN, occam
 from pneumo_ros.diagnose.screening import FINALISTS, SHORTLIST, STRAINED, screen, shortlist
 from pneumo_ros.diagnose.slip_candidates import longer
 from pneumo_ros.diagnose.slips import polished, slips, with_values_of
@@ -168,12 +168,24 @@ class Search:
             new = self.fitter.simplest(new, name, self.horizon)
         new = self.polish(new)
         std = self.fitter.deviations(new)
-        older = [n for n in self.fitter.added(new) if n != candidate.name and undetermined(new, n, std)]
+        older = [n for n in self.fitter.added(new) if n != candidate.name and self.idle(new, n, std)]
         small = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL and n not in self.paying]
         gone = [n for n in self.fitter.added(new) if n in small or n in older]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
+
+    def idle(self, model: Model, name: str, std: Mapping[str, float]) -> bool:
+        """Whether an effect of the model may be none, or is worth less than is asked of an effect.
+
+        Only an effect whose sizes, over their deviations `std`, leave that open is taken out to see what it is worth.
+        """
+        if undetermined(model, name, std):
+            return True
+        if name in self.paying or not undetermined(model, name, std, within=float(np.sqrt(2.0 * MARGIN))):
+            return False
+        bare = self.polish(self.refit(model.with_effects([other for other in model.effects if other != name])))
+        return self.fitter.gain(model, bare) < MARGIN
 
     def _polish(self, model: Model) -> Model:
         """The model with friction refitted to breakaways and reversals, on which predictions depend.

@@ -235,3 +235,29 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     )
     new, gone = Search.extended(search, late, candidate(LOAD))
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
+
+
+@pytest.mark.parametrize(
+    ("deviation", "worth", "gone"),
+    [(0.6, 50.0, True), (0.3, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)],
+    ids=["may be none", "unsure and needed", "unsure and idle", "sure"],
+)
+def test_an_older_effect_is_worth_something_beside_a_new_one(deviation: float, worth: float, gone: bool) -> None:
+    """A dwell time of 10 nats stood in for another Stribeck curve, and stayed when that one was found."""
+    size = "constant_load.load"
+    loaded = BASE.with_effects([*BASE.effects, LOAD], {size: 1.0})
+    search = Played([], {})
+    search.horizon = 1.0
+    search.fitter = cast(
+        Fitter,
+        SimpleNamespace(
+            refit=lambda model: model,
+            extended=lambda model, h: model.with_effects([*model.effects, h.name]),
+            added=lambda model: [name for name in model.effects if name not in BASE.effects],
+            simplest=lambda model, name, horizon: model,
+            deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation},
+            gain=lambda new, old: worth if LOAD in new.effects and LOAD not in old.effects else 0.0,
+        ),
+    )
+    found = Search.extended(search, loaded, candidate(STRIBECK))[1]
+    assert (LOAD in found) == gone
