@@ -8,9 +8,10 @@ from pneumo_ros.compare.wording import times
 from pneumo_ros.diagnose.outcome import ADEQUATE, UNKNOWN
 from pneumo_ros.diagnose.score import MARGIN
 from pneumo_ros.wording.additions import ParameterWords, parameter
-from pneumo_ros.wording.naming import listed
+from pneumo_ros.wording.naming import NORMAL, listed
 from pneumo_ros.wording.table import Table
 
+MANY, SHOWN = 6, 3  # sizes of an effect that are listed each, and of those that are more
 # equation -> the parts of the machine that it describes
 PLACES = {
     "momentum": "piston, rod, guide and load",
@@ -36,14 +37,25 @@ def answers(result: Mapping[str, Any]) -> tuple[AnswerWords, ...]:
 
 def _answer(one: Mapping[str, Any]) -> AnswerWords:
     effect = str(one["effect"])
-    sizes = [_size(parameter(effect, key, value)) for key, value in one["parameters"].items()]
-    return AnswerWords(effect, "; ".join(sizes) or "no parameter", _sure(one), one.get("signature", ""))
+    return AnswerWords(effect, _sizes(effect, one["parameters"]), _sure(one), one.get("signature", ""))
 
 
-def _size(one: ParameterWords) -> str:
+def _sizes(effect: str, parameters: Mapping[str, Any]) -> str:
+    """Each size; of the many of a profile the largest that are not zero, and where they are."""
+    if len(parameters) <= MANY:
+        return "; ".join(_size(parameter(effect, key, one)) for key, one in parameters.items()) or "no parameter"
+    sure = [(key, one) for key, one in parameters.items() if one["std"] and abs(one["value"]) > NORMAL * one["std"]]
+    if not sure:
+        return f"{len(parameters)} coefficients, each of which may be 0"
+    largest = sorted(sure, key=lambda item: -abs(item[1]["value"]))[:SHOWN]
+    each = "; ".join(_size(parameter(effect, key, one), one.get("meaning", "")) for key, one in largest)
+    return f"{len(sure)} of {len(parameters)} coefficients are not 0; the largest: {each}"
+
+
+def _size(one: ParameterWords, called: str = "") -> str:
     """'conductance 3.0e-10 kg/(s Pa) (95 %: 2.9e-10 to 3.1e-10)'."""
     span = one.interval if one.interval == "not determined" else f"95 %: {one.interval}"
-    return f"{one.key.replace('_', ' ')} {one.value} {one.unit}".rstrip() + f" ({span})"
+    return f"{called or one.key.replace('_', ' ')} {one.value} {one.unit}".rstrip() + f" ({span})"
 
 
 def _sure(one: Mapping[str, Any]) -> str:
