@@ -204,7 +204,7 @@ class _Descent:
         scale = family_scales(self.evidence, self.residual)
         for _ in range(REWEIGHTED):
             w = weights(self.evidence, after, scale)
-            x = solve_within(self.slopes, self.residual, w, ones, offset, *room)
+            x = solve_within((self.slopes,), self.residual, w, ones, offset, *room)
             after = self.residual + self.slopes @ x
         return x, after
 
@@ -236,7 +236,7 @@ def at_best(base: BaseFit, here: Array, unit: Array | float = 1.0) -> tuple[Arra
     for _ in range(4):
         scale = family_scales(base.evidence, after / unit)
         weight = weights(base.evidence, after / unit, scale) / unit
-        shift, _A, _bread = solve(base.slopes, here, weight, np.ones(len(base.names)), base.offset)
+        shift, _bread = solve((base.slopes,), here, weight, np.ones(len(base.names)), base.offset)
         after = here + base.slopes @ shift
     value = log_likelihood(base.evidence, after / unit) - strain(shift + base.offset)
     return shift, after, value

@@ -13,6 +13,7 @@ from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaping, un
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
+    block_sums,
     cluster_robust,
     everything,
     family_scales,
@@ -267,7 +268,7 @@ def _spread(A: Array, e: Array, evidence: Evidence) -> Array:
     """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, at least those of noise alone."""
     ridge = np.ones(A.shape[1])
     bread = np.linalg.inv(A.T @ A + np.diag(ridge))
-    robust = cluster_robust(A, e, evidence.block, bread, ridge)
+    robust = cluster_robust(block_sums((A,), np.ones(len(e)), e, evidence.block), bread, ridge)
     return np.asarray(np.sqrt(np.maximum(np.diag(robust), np.diag(bread))))
 
 

@@ -4,7 +4,7 @@ All hypotheses share one model that holds every candidate at its neutral setting
 one kernel. Base parameters act through their derivative at the current model; candidates act exactly, by Gauss-Newton.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,6 +23,9 @@ from pneumo_ros.shooting.robust import huber_loss, huber_weight
 
 Array = NDArray[np.float64]
 
+Slopes = Sequence[Array]  # derivatives side by side, each (residuals, some): of base parameters, and of a candidate
+
+ROWS = 4096  # residuals whose weighted slopes are kept at a time
 FAR = 50.0  # usual sizes: no residual counts as larger
 SCALE_TAIL = 5.0  # scales: beyond, the loss of an error is linear
 OVERLAP = 0.6  # weight of each window, as windows overlap and together count about once
@@ -184,37 +187,69 @@ def vectors(model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
     return result
 
 
-def solve(K: Array, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Array, Array, Array]:
-    """Step x (p,) that minimises |w (r + K x)|^2 + |sqrt(ridge) (x + offset)|^2; also w K and the inverse normal.
+def gathered(slopes: Slopes, w: Array, r: Array) -> tuple[Array, Array]:
+    """Normal matrix (p, p) of weighted slopes, and their gradient (p,) with the weighted residual r (residuals,)."""
+    p = _columns(slopes)
+    normal, gradient = np.zeros((p, p)), np.zeros(p)
+    for rows, A in _weighted(slopes, w):
+        with np.errstate(invalid="ignore", over="ignore"):
+            normal += A.T @ A
+            gradient += A.T @ (w[rows] * r[rows])
+    return normal, gradient
+
+
+def block_sums(slopes: Slopes, w: Array, e: Array, block: NDArray[np.int64]) -> Array:
+    """Sums (blocks, p) over blocks of time of weighted slopes times weighted residuals e (residuals,)."""
+    sums = np.zeros((int(block.max()) + 1, _columns(slopes)))
+    for rows, A in _weighted(slopes, w):
+        sums += csr_array((e[rows], block[rows], np.arange(len(A) + 1)), (len(A), len(sums))).T @ A
+    return sums
+
+
+def along(slopes: Slopes, x: Array) -> Array:
+    """Change (residuals,) by a step x (p,)."""
+    change, first = np.zeros(len(slopes[0])), 0
+    for part in slopes:
+        change += part @ x[first : first + part.shape[1]]
+        first += part.shape[1]
+    return change
+
+
+def _columns(slopes: Slopes) -> int:
+    return sum(part.shape[1] for part in slopes)
+
+
+def _weighted(slopes: Slopes, w: Array) -> Iterator[tuple[slice, Array]]:
+    """Weighted slopes (rows, p), some rows at a time: of a long recording all together are large, for every thread."""
+    for first in range(0, len(w), ROWS):
+        rows = slice(first, first + ROWS)
+        yield rows, np.concatenate([part[rows] for part in slopes], axis=1) * w[rows, None]
+
+
+def solve(slopes: Slopes, r: Array, w: Array, ridge: Array, offset: Array) -> tuple[Array, Array]:
+    """Step x (p,) that minimises |w (r + slopes x)|^2 + |sqrt(ridge) (x + offset)|^2; and the inverse normal matrix.
 
     Raises NumericalError when the derivatives are not finite, or differ too much in magnitude.
     """
-    A, normal = _normal(K, w, ridge)
-    bread = finite(np.linalg.inv, normal)
-    return bread @ (-(A.T @ (w * r)) - ridge * offset), A, bread
+    normal, gradient = gathered(slopes, w, r)
+    bread = finite(np.linalg.inv, normal + np.diag(ridge))
+    return bread @ (-gradient - ridge * offset), bread
 
 
-def solve_within(K: Array, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
+def solve_within(slopes: Slopes, r: Array, w: Array, ridge: Array, offset: Array, low: Array, high: Array) -> Array:
     """The step of `solve` that is best within low and high (p,). Raises NumericalError as `solve`."""
-    A, normal = _normal(K, w, ridge)
-    return bounded_minimum(normal, A.T @ (w * r) + ridge * offset, low, high)
+    normal, gradient = gathered(slopes, w, r)
+    return bounded_minimum(normal + np.diag(ridge), gradient + ridge * offset, low, high)
 
 
-def _normal(K: Array, w: Array, ridge: Array) -> tuple[Array, Array]:
-    """Weighted slopes A (residuals, p) and A^T A + diag(ridge)."""
-    A = K * w[:, None]
-    with np.errstate(invalid="ignore", over="ignore"):
-        return A, A.T @ A + np.diag(ridge)
-
-
-def cluster_robust(A: Array, e: Array, block: NDArray[np.int64], bread: Array, ridge: Array) -> Array:
+def cluster_robust(sums: Array, bread: Array, ridge: Array) -> Array:
     """Covariance of a least-squares estimate whose errors are correlated within blocks (Liang and Zeger 1986).
 
-    Directions that only a prior determines (`ridge`, its information) keep the prior's uncertainty.
+    sums (blocks, p): `block_sums`. Directions that only a prior determines (`ridge`, its information) keep the prior's
+    uncertainty.
     """
-    scores = csr_array((e, block, np.arange(len(e) + 1)), (len(e), int(block.max()) + 1)).T @ A
-    n = len(scores)
-    return np.asarray(bread @ (scores.T @ scores * (n / max(n - A.shape[1], 1)) + np.diag(ridge)) @ bread)
+    n = len(sums)
+    return np.asarray(bread @ (sums.T @ sums * (n / max(n - sums.shape[1], 1)) + np.diag(ridge)) @ bread)
 
 
 def wald(size: Array, covariance: Array) -> float:

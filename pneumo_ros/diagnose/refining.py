@@ -13,7 +13,11 @@ from pneumo_ros.diagnose.hypothesis import (
     COORDINATE_PROBE,
     BaseFit,
     Hypothesis,
+    Slopes,
+    along,
+    block_sums,
     family_scales,
+    gathered,
     solve_within,
     vectors,
     weights,
@@ -145,11 +149,11 @@ def _probes(h: Hypothesis, u: Array) -> list[Array]:
     return found
 
 
-def _system(base: BaseFit, h: Hypothesis, u: Array, C: Array) -> tuple[Array, Array, Array]:
+def _system(base: BaseFit, h: Hypothesis, u: Array, C: Array) -> tuple[Slopes, Array, Array]:
     """Slopes, ridge and offset of base parameters and candidate together, about base values and u."""
     p, priors = len(base.names), np.array([c.prior for c in h.coordinates])
     ridge = np.concatenate([np.ones(p), 1.0 / priors**2])
-    return np.concatenate([base.slopes, C], axis=1), ridge, np.concatenate([base.offset, u])
+    return (base.slopes, C), ridge, np.concatenate([base.offset, u])
 
 
 def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array, unit: Array | float) -> Hypothesis:
@@ -159,14 +163,14 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array, unit: 
     value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
     K, ridge, _offset = _system(base, h, u, C)
     w = _weights(base, after, unit)
-    A = K * w[:, None]
-    of_all = of_sizes = covariances(base, A, w * after, ridge)
+    normal, sums = gathered(K, w, after)[0], block_sums(K, w, w * after, base.evidence.block)
+    of_all = of_sizes = covariances(base, normal, sums, ridge)
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
     if len(sizes) < len(u):
         # Without the effect there is no shape to be uncertain of. A free shape that is correlated with a small size,
         # as a share of flow with its conductance, would hide the largest gain.
         kept = [*range(p), *(p + j for j in sizes)]
-        of_sizes = covariances(base, A[:, kept], w * after, ridge[kept])
+        of_sizes = covariances(base, normal[np.ix_(kept, kept)], sums[:, kept], ridge[kept])
     t = significance([h.coordinates[j] for j in sizes], u[sizes], *of_sizes)
     relief = relief_of(base, shift)
     return replace(
@@ -186,15 +190,15 @@ def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array, unit: Array | flo
     for _ in range(3):
         w = _weights(base, after, unit)
         x = bounded_step(h, K, here, w, ridge, offset)
-        after, step = here + K @ x, x[first:]
+        after, step = here + along(K, x), x[first:]
     logs = np.array([c.logarithmic for c in h.coordinates])
     step = np.where(logs, np.clip(step, -1.0, 1.0), np.clip(step, -3.0, 3.0))
     return np.array([c.clip(v) for c, v in zip(h.coordinates, h.u + step, strict=True)])
 
 
-def bounded_step(h: Hypothesis, K: Array, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
+def bounded_step(h: Hypothesis, K: Slopes, here: Array, w: Array, ridge: Array, offset: Array) -> Array:
     """The best step with the candidate's coordinates kept within their bounds."""
-    low, high = np.full(K.shape[1], -np.inf), np.full(K.shape[1], np.inf)
+    low, high = np.full(len(ridge), -np.inf), np.full(len(ridge), np.inf)
     ends = np.array([c.ends for c in h.coordinates])
     low[-len(h.u) :], high[-len(h.u) :] = (ends - h.u[:, None]).T
     return solve_within(K, here, w, ridge, offset, low, high)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.basefit import strain
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import points_of
-from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales, weights
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales, gathered, weights
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.jit import entry
 
@@ -372,8 +372,7 @@ def occam(base: BaseFit, h: Hypothesis, spread: float = 1.0) -> float:
     Their prior is `spread` usual sizes, or a factor e; what base parameters may replace is no information.
     """
     w = weights(base.evidence, h.residual, family_scales(base.evidence, h.residual))
-    A, p = np.concatenate([base.slopes, spread * h.slopes], axis=1) * w[:, None], len(base.names)
-    normal = A.T @ A
+    normal, p = gathered((base.slopes, spread * h.slopes), w, h.residual)[0], len(base.names)
     own = normal[:p, :p] + np.eye(p)
     information = normal[p:, p:] - normal[p:, :p] @ np.linalg.solve(own, normal[:p, p:])
     return 0.5 * float(np.linalg.slogdet(np.eye(len(information)) + information)[1])

@@ -12,6 +12,8 @@ from pneumo_ros.diagnose.freedom import profile_slopes
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
+    along,
+    block_sums,
     cluster_robust,
     family_likelihoods,
     family_scales,
@@ -113,20 +115,20 @@ def _linear(
         C = C[:, [k not in idle for k in sizes]]
         sizes = [kept.index(k) for k in sizes if k not in idle]
         effect, u = tuple(effect[k] for k in kept), u[kept]
-    K, p = np.concatenate([base.slopes, C], axis=1), len(base.names)
+    K, p = (base.slopes, C), len(base.names)
     ridge = np.concatenate([np.ones(p), [_known(effect[k], u[k]) for k in sizes]])
     offset = np.concatenate([base.offset, np.zeros(len(sizes))])
-    after, x = base.residual, np.zeros(K.shape[1])
+    after, x = base.residual, np.zeros(len(ridge))
     low, high = _room(effect, u, sizes, p)
     for _ in range(REWEIGHTED):
         scale = family_scales(base.evidence, after)
         w = weights(base.evidence, after, scale)
-        x, A, bread = solve(K, base.residual, w, ridge, offset)
+        x, bread = solve(K, base.residual, w, ridge, offset)
         if np.any((x < low) | (x > high)):  # else a negative mass would explain noise that it amplifies
             x = solve_within(K, base.residual, w, ridge, offset, low, high)
-        after = base.residual + K @ x
+        after = base.residual + along(K, x)
     w = weights(base.evidence, after, scale)
-    cov = cluster_robust(A, w * after, base.evidence.block, bread, ridge)[p:, p:]
+    cov = cluster_robust(block_sums(K, w, w * after, base.evidence.block), bread, ridge)[p:, p:]
     start = u.copy()
     for k, size in zip(sizes, x[p:], strict=True):
         c = effect[k]

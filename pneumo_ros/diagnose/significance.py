@@ -13,14 +13,15 @@ Array = NDArray[np.float64]
 DEGENERATE = 1e6  # no recording gives so large a t: sizes that move no residual have no scatter, only their prior
 
 
-def covariances(base: BaseFit, A: Array, e: Array, ridge: Array) -> tuple[Array, Array]:
-    """Covariances of the candidate's columns of A, after the base parameters': cluster-robust, and by noise alone.
+def covariances(base: BaseFit, normal: Array, sums: Array, ridge: Array) -> tuple[Array, Array]:
+    """Covariances of a candidate's coordinates beside the base parameters: cluster-robust, and by noise alone.
 
-    A (residuals, base + own): weighted slopes; e: weighted residual; ridge: information of the priors.
+    normal (base + own, base + own): of weighted slopes; sums (blocks, base + own): `block_sums`; ridge: information of
+    the priors.
     """
     p = len(base.names)
-    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
-    return cluster_robust(A, e, base.evidence.block, bread, ridge)[p:, p:], bread[p:, p:]
+    bread = np.linalg.inv(normal + np.diag(ridge)).astype(np.float64)
+    return cluster_robust(sums, bread, ridge)[p:, p:], bread[p:, p:]
 
 
 def significance(own: Sequence[Coordinate], u: Array, robust: Array, plain: Array) -> float:

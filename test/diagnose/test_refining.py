@@ -27,7 +27,7 @@ def test_a_step_is_the_best_within_the_bounds(seed: int) -> None:
     slopes, here = system(seed)
     h = Hypothesis("", OWN, np.array([0.4, 0.1]), np.zeros(BASE), here)
     ridge, offset = np.append(np.ones(BASE), np.full(2, 1e-3)), np.zeros(BASE + 2)
-    step = bounded_step(h, slopes, here, np.ones(60), ridge, offset)
+    step = bounded_step(h, (slopes,), here, np.ones(60), ridge, offset)
     rows = np.concatenate([slopes, np.diag(np.sqrt(ridge))])
     low = np.append(np.full(BASE, -np.inf), -h.u)  # neither slope of friction falls below zero
     best = lsq_linear(rows, np.append(-here, np.zeros(BASE + 2)), (low, np.inf)).x
