@@ -87,10 +87,15 @@ class OwnNoise:
         self.square = family_scales(evidence, residual / self.here)[evidence.family] ** 2
 
     def of(self, models: Sequence[Model], found: Array) -> Array:
-        """The same of other models, from their residuals (models, residuals) over the noise of the windows."""
-        loads = [self.evidence.load(one) for one in models]
-        factors = {load: self.factor(load) for load in {*loads}}
-        return np.stack([own / factors[load] for own, load in zip(found, loads, strict=True)])
+        """Residuals of other models in the noise of `model`, from those over the noise of the windows, in place.
+
+        found (models, residuals): a model that amplifies noise by twice as much has half of the residual.
+        """
+        for own, one in zip(found, models, strict=True):
+            load = self.evidence.load(one)
+            if load != self.load:
+                own *= self.here / self.factor(load)
+        return found
 
     def factor(self, load: float) -> Array:
         """Noise (residuals,) where the mass that moves at once is `load` times as large, over that of the windows."""
@@ -110,8 +115,8 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
     variants = [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))]
     r = residuals(evidence, model, variants)
     own = OwnNoise(evidence, model, r[0])
-    q = own.here * own.of([model.with_parameters(variant) for variant in variants], r)
-    return r[0], np.asarray(((q[1:] - q[0]) / (steps / known.prior)[:, None]).T)
+    r = own.of([model.with_parameters(variant) for variant in variants], r)
+    return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
 def fit_base(
@@ -192,7 +197,7 @@ class _Descent:
         values = [physical(self.model, names, own) for own in values]
         variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
         models = [self.model.with_parameters(variant) for variant in variants]
-        found = self.own.of(models, residuals(self.evidence, self.model, variants))
+        found = self.own.of(models, residuals(self.evidence, self.model, variants)) / self.own.here
         offsets = [(own - self.known.centre) / prior for own in values]
         objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
         return list(zip(objectives, variants, found, strict=True))
