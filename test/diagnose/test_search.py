@@ -212,6 +212,21 @@ def test_candidates_are_compared_where_slopes_reach(offset: float, gain: float, 
     assert found is (refitted if moves else model)
 
 
+def extending(**given: Any) -> Search:
+    """A search that adds effects as they are, whose sizes are sure, unless something else is `given` of its fitter."""
+    search = Played([], {})
+    search.horizon, search.paying = 1.0, set()
+    usual: dict[str, Any] = {
+        "refit": lambda model: model,
+        "extended": lambda model, h: model.with_effects([*model.effects, h.name]),
+        "added": lambda model: [name for name in model.effects if name not in BASE.effects],
+        "simplest": lambda model, name, horizon: model,
+        "deviations": lambda model: dict.fromkeys(model.parameters, 1e-9),
+    }
+    search.fitter = cast(Fitter, SimpleNamespace(**(usual | given)))
+    return search
+
+
 def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     """A late position had got a low-pass of 1.4 ms before a leak was found, and kept it: its delay was 14 % off."""
     delay, low_pass = "position_sensor_delay.delay", "position_sensor_delay.low_pass"
@@ -221,18 +236,7 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
         beside = "constant_load" in model.effects and name == "position_sensor_delay"
         return model.with_parameters({delay: 10.5e-3, low_pass: 0.0} if beside else {})
 
-    search = Played([], {})
-    search.horizon, search.paying = 1.0, set()
-    search.fitter = cast(
-        Fitter,
-        SimpleNamespace(
-            refit=lambda model: model,
-            extended=lambda model, h: model.with_effects([*model.effects, h.name]),
-            added=lambda model: [name for name in model.effects if name not in BASE.effects],
-            simplest=simplest,
-            deviations=lambda model: dict.fromkeys(model.parameters, 1e-9),
-        ),
-    )
+    search = extending(simplest=simplest)
     new, gone = Search.extended(search, late, candidate(LOAD))
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
 
@@ -246,18 +250,9 @@ def test_an_older_effect_is_worth_something_beside_a_new_one(deviation: float, w
     """A dwell time of 10 nats stood in for another Stribeck curve, and stayed when that one was found."""
     size = "constant_load.load"
     loaded = BASE.with_effects([*BASE.effects, LOAD], {size: 1.0})
-    search = Played([], {})
-    search.horizon = 1.0
-    search.fitter = cast(
-        Fitter,
-        SimpleNamespace(
-            refit=lambda model: model,
-            extended=lambda model, h: model.with_effects([*model.effects, h.name]),
-            added=lambda model: [name for name in model.effects if name not in BASE.effects],
-            simplest=lambda model, name, horizon: model,
-            deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation},
-            gain=lambda new, old: worth if LOAD in new.effects and LOAD not in old.effects else 0.0,
-        ),
+    search = extending(
+        deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation},
+        gain=lambda new, old: worth if LOAD in new.effects and LOAD not in old.effects else 0.0,
     )
     found = Search.extended(search, loaded, candidate(STRIBECK))[1]
     assert (LOAD in found) == gone
