@@ -110,17 +110,17 @@ class Scoring:
         return Best(_evidence(families), (train, held, np.zeros(0)), noise)
 
     def in_noise_of(self, other: Best, model: Model, best: Best) -> Best:
-        """A model's best fit; each family in the noise that another model found, where that makes it more likely.
+        """A model's best fit; each family in the noise that another model found, where it gains more than in its own.
 
         All have the same sensors. Where the noise may as well be a little larger and the discrepancy smaller, the
         model that came upon it gains hundreds of nats, which are no merit of it.
         """
         evidence, noise = best.evidence.copy(), dict(best.noise)
-        own = self._families(model, best.fit[:2])
-        for one, again in zip(own, self._families(model, best.fit[:2], other.noise), strict=True):
-            gained = again.evidence() - one.evidence()
+        own, again = (self._families(model, best.fit[:2], at.noise) for at in (best, other))
+        for before, after in zip(own, again, strict=True):
+            gained = after.evidence() - before.evidence()
             if gained.sum() > 0.0:
-                evidence, noise[one.name] = evidence + gained, again.best
+                evidence, noise[after.name] = evidence + gained, after.best
         return Best(evidence, best.fit, noise)
 
     def _families(

@@ -13,7 +13,7 @@ from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import uneven
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.judging import judged
-from pneumo_ros.diagnose.score import Best, Scoring, log_prior, moved, occam, surprise
+from pneumo_ros.diagnose.score import Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model, load_model
 
 Array = NDArray[np.float64]
@@ -109,15 +109,20 @@ def test_a_discrepancy_counts_in_the_noise_that_a_mass_amplifies(seed: int) -> N
 @pytest.mark.parametrize("seed", range(3))
 def test_a_scale_of_the_noise_that_only_a_candidate_found_is_no_merit_of_it(seed: int) -> None:
     """More noise and a fast discrepancy are nearly the same: 2 % more of it was worth hundreds of nats."""
-    left, parts = noise(seed), (evidence(), evidence())
-    scoring = Scoring(*parts)
+    left, scoring = noise(seed), Scoring(evidence(), evidence())
     scoring.usual = {"momentum 100 ms": (0.5, 0.03, 0.9)}  # as the model without the candidate came upon it
-    own = Best(scoring.evidence(MODEL, left, left), (left, left, np.zeros(0)), dict(scoring.usual))
-    other = replace(own, noise={"momentum 100 ms": (0.0, 0.03, 1.0)})
-    again = scoring.in_noise_of(other, MODEL, own)
-    assert float((again.evidence - own.evidence).sum()) > 100.0
-    assert again.noise["momentum 100 ms"][0] < 0.1
-    assert float((scoring.in_noise_of(own, MODEL, again).evidence - again.evidence).sum()) == 0.0
+    own = scoring.at(MODEL, left, left)
+    other = replace(own, fit=(0.0 * left, 0.0 * left, np.zeros(0)), noise={"momentum 100 ms": (0.0, 0.03, 1.0)})
+    assert float((scoring.in_noise_of(other, MODEL, own).evidence - own.evidence).sum()) > 100.0
+
+
+def test_the_same_noise_is_no_gain() -> None:
+    """Every candidate once lost five nats by the scale that it shares with the model without it."""
+    left, scoring = noise(3, scale=1.03), Scoring(evidence(), evidence())
+    scoring.usual = {"momentum 100 ms": (0.0, 0.03, 1.0)}
+    own = scoring.at(MODEL, left, left)
+    again = scoring.in_noise_of(own, MODEL, own)
+    assert again.evidence == pytest.approx(own.evidence, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(6))
