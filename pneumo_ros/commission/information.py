@@ -18,7 +18,7 @@ from pneumo_ros.commission.slips import surely_static
 from pneumo_ros.diagnose.basefit import Known, slopes, strain
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import UNSEEN, Fitter
-from pneumo_ros.diagnose.hypothesis import block_sums, cluster_robust, family_scales, log_likelihood, weights
+from pneumo_ros.diagnose.hypothesis import family_scales, log_likelihood, spread, weights
 from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.identify.presliding import fit_presliding
 from pneumo_ros.plant import Model
@@ -51,11 +51,7 @@ class Told:
 
     def deviations(self) -> Array:
         """Standard deviations (parameters,) over those of the prior."""
-        ridge = np.ones(self.slopes.shape[1])
-        bread = np.linalg.inv(self.information + np.diag(ridge)).astype(np.float64)
-        sums = block_sums((self.slopes,), np.ones(len(self.residual)), self.residual, self.block)
-        robust = cluster_robust(sums, bread, ridge)
-        return np.sqrt(np.maximum(np.diag(robust), np.diag(bread)))
+        return spread(self.slopes, self.residual, self.block)
 
     def beside(self, more: "Told") -> "Told":
         """Both together."""

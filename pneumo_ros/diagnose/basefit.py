@@ -19,6 +19,7 @@ from pneumo_ros.diagnose.hypothesis import (
     family_scales,
     huber,
     log_likelihood,
+    own_weights,
     solve,
     solve_within,
     vectors,
@@ -91,16 +92,17 @@ class OwnNoise:
 
         found (models, residuals): a model that amplifies noise by twice as much has half of the residual.
         """
-        for own, one in zip(found, models, strict=True):
-            load = self.evidence.load(one)
-            if load != self.load:
-                own *= self.here / self.factor(load)
+        for row, one in zip(found, models, strict=True):
+            row /= self.unit(one)
         return found
 
-    def factor(self, load: float) -> Array:
-        """Noise (residuals,) where the mass that moves at once is `load` times as large, over that of the windows."""
+    def unit(self, other: Model) -> Array | float:
+        """Noise (residuals,) of another model over that of `model`; 1 where they carry the same load."""
+        load = self.evidence.load(other)
+        if load == self.load:
+            return 1.0
         grown = (self.evidence.by_load(load) / self.here) ** 2
-        return np.asarray(self.here * np.sqrt(1.0 + (grown - 1.0) / self.square))
+        return np.asarray(np.sqrt(1.0 + (grown - 1.0) / self.square))
 
 
 def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array]:
@@ -108,6 +110,11 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
 
     Both in the noise of the windows; a parameter that amplifies it counts as `OwnNoise` says.
     """
+    return _slopes(evidence, model, known)[1:]
+
+
+def _slopes(evidence: Evidence, model: Model, known: Known) -> tuple[OwnNoise, Array, Array]:
+    """The same, and the noise in which the residuals of the probes counted."""
     ends = np.array([model.specification(n).high for n in known.names])
     here = np.array([model[n] for n in known.names])
     steps = small_step(known.step, here, known.centre, FINE)
@@ -116,7 +123,7 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
     r = residuals(evidence, model, variants)
     own = OwnNoise(evidence, model, r[0])
     r = own.of([model.with_parameters(variant) for variant in variants], r)
-    return r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
+    return own, r[0], np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
 def fit_base(
@@ -157,8 +164,7 @@ class _Descent:
 
     def renew(self) -> None:
         """Compute the slopes at the current model."""
-        residual, steep = slopes(self.evidence, self.model, self.known)
-        self.own = OwnNoise(self.evidence, self.model, residual)
+        self.own, residual, steep = _slopes(self.evidence, self.model, self.known)
         self.residual, self.slopes = residual / self.own.here, steep / self.own.here[:, None]
 
     def in_the_same_noise(self) -> bool:
@@ -239,8 +245,7 @@ def at_best(base: BaseFit, here: Array, unit: Array | float = 1.0) -> tuple[Arra
     """
     after, shift = here, np.zeros(len(base.names))
     for _ in range(4):
-        scale = family_scales(base.evidence, after / unit)
-        weight = weights(base.evidence, after / unit, scale) / unit
+        weight = own_weights(base.evidence, after, unit)
         shift, _bread = solve((base.slopes,), here, weight, np.ones(len(base.names)), base.offset)
         after = here + base.slopes @ shift
     value = log_likelihood(base.evidence, after / unit) - strain(shift + base.offset)

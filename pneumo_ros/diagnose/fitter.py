@@ -13,13 +13,11 @@ from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaping, un
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
-    block_sums,
-    cluster_robust,
     everything,
-    family_scales,
     log_likelihood,
     missing,
-    weights,
+    own_weights,
+    spread,
 )
 from pneumo_ros.diagnose.prediction import typical_error, windowed
 from pneumo_ros.diagnose.score import Scoring, surprise
@@ -150,7 +148,7 @@ class Fitter:
         scoring = Scoring(*parts)
         scoring.measure(old, *without)
         after, before = scoring.at(new, *residuals), scoring.at(old, *without)
-        gained = after.evidence - scoring.in_noise_of(after, old, before).evidence
+        gained = after.evidence - scoring.in_noise_of([after], old, before)[0].evidence
         strained = strain(self.known(new).offset(new)) - strain(self.known(old).offset(old))
         return float(gained.sum() if self._held_runs else gained[0]) - strained
 
@@ -242,12 +240,12 @@ class Fitter:
         A parameter at the end of its range counts as known for the deviations of the others.
         """
         base = self.fit(model)
-        w = weights(self.train, base.residual, family_scales(self.train, base.residual))
+        w = own_weights(self.train, base.residual)
         A, e = base.slopes * w[:, None], w * base.residual
         ends = [model[n] in (model.specification(n).low, model.specification(n).high) for n in base.names]
         held = np.array(ends, dtype=bool)
-        std = _spread(A, e, self.train)
-        std[~held] = _spread(A[:, ~held], e, self.train)
+        std = spread(A, e, self.train.block)
+        std[~held] = spread(A[:, ~held], e, self.train.block)
         named = zip(base.names, std * base.prior, base.prior, strict=True)
         return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
 
@@ -262,14 +260,6 @@ class Fitter:
         moved |= {n: self.start[n] for n in UNSEEN if n in self.start.parameters}  # biased while the effect was missing
         values = {c.name: c.neutral for c in coordinates(model.library.find(h.name)) if c.neutral is not None}
         return model.with_parameters(moved).with_effects([*model.effects, h.name], values | h.values)
-
-
-def _spread(A: Array, e: Array, evidence: Evidence) -> Array:
-    """Deviations (p,) in priors by weighted slopes A (residuals, p): cluster-robust, at least those of noise alone."""
-    ridge = np.ones(A.shape[1])
-    bread = np.linalg.inv(A.T @ A + np.diag(ridge))
-    robust = cluster_robust(block_sums((A,), np.ones(len(e)), e, evidence.block), bread, ridge)
-    return np.asarray(np.sqrt(np.maximum(np.diag(robust), np.diag(bread))))
 
 
 def _coordinates(model: Model, names: Sequence[str]) -> dict[str, tuple[Coordinate, ...]]:

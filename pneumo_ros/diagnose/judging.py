@@ -66,9 +66,9 @@ def judged(
     ]
     ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
     alone = scoring.best(base.everything, fits, ways, threads=2)
-    unaided, bare = surprise(base, alone.fit[2]), alone
-    for h, r, beside in zip(hypotheses, residuals, reached, strict=True):
-        alone = scoring.in_noise_of(beside.best, base.everything, bare)
+    unaided = surprise(base, alone.fit[2])
+    bare = scoring.in_noise_of([one.best for one in reached], base.everything, alone)
+    for h, r, beside, alone in zip(hypotheses, residuals, reached, bare, strict=True):
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h.name)  # a texture that its points explain is nothing that was known
         plain = _plain(scoring, fits, h, alone)
@@ -172,7 +172,7 @@ def size_in(model: Model, name: str) -> float:
 
 
 def undetermined(model: Model, name: str, std: Mapping[str, float], within: float = NONE_WITHIN) -> bool:
-    """Whether all sizes of an effect of the model may be zero: each is `within` two of its deviations `std` of neutral.
+    """Whether all sizes of an effect of the model may be zero: each is at most `within` deviations `std` from neutral.
 
     Sizes of infinite deviation, on which there are no data, or without one, as those of another form, say nothing.
     """

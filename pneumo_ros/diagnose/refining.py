@@ -16,13 +16,13 @@ from pneumo_ros.diagnose.hypothesis import (
     Slopes,
     along,
     block_sums,
-    family_scales,
     gathered,
+    own_weights,
     solve_within,
     vectors,
-    weights,
 )  # fmt: skip
 from pneumo_ros.diagnose.significance import covariances, significance
+from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
 
@@ -38,8 +38,8 @@ def refine(
     Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
     best = [replace(h, likelihood=-np.inf, slopes=profile_slopes(base, h.name, h.coordinates)) for h in hypotheses]
-    units = _Units(base)
-    begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses, units)
+    noise = OwnNoise(base.evidence, base.model, base.residual)
+    begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses, noise)
     moving = list(range(len(best)))
     for _k in range(iterations):
         variants: list[dict[str, float]] = []
@@ -53,32 +53,22 @@ def refine(
         residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=not settled)
         own = [residual[spans[i] : spans[i] + 1 + len(begins[i])] for i in moving]
         with ThreadPoolExecutor(2) as pool:
-            taken = list(pool.map(lambda i, r: _advanced(base, best[i], begins[i], r, units), moving, own))
+            taken = list(pool.map(lambda i, r: _advanced(base, best[i], begins[i], r, noise), moving, own))
         for i, (h, u, _) in zip(moving, taken, strict=True):
             best[i], begins[i] = h, u
         moving = [i for i, (_, _, settles) in zip(moving, taken, strict=True) if not settles]
     return best
 
 
-class _Units:
-    """The noise in which a candidate's residual counts, over that of the base: a load amplifies it."""
-
-    def __init__(self, base: BaseFit) -> None:
-        self.base, self.own = base, OwnNoise(base.evidence, base.model, base.residual)
-
-    def at(self, h: Hypothesis, u: Array) -> Array | float:
-        """Of a candidate at u: (residuals,), or 1."""
-        load = self.base.evidence.load(self.base.everything.with_parameters(_values(h, u)))
-        return 1.0 if load == self.own.load else np.asarray(self.own.factor(load) / self.own.here)
-
-
-def _advanced(base: BaseFit, h: Hypothesis, u: Array, residual: Array, units: _Units) -> tuple[Hypothesis, Array, bool]:
+def _advanced(
+    base: BaseFit, h: Hypothesis, u: Array, residual: Array, noise: OwnNoise
+) -> tuple[Hypothesis, Array, bool]:
     """The better of a hypothesis and of itself at u, where to try it next, and whether it has settled.
 
-    residual (1 or 1 + coordinates, residuals): at u, and at its probes if the slopes are not kept.
+    residual (1 or 1 + coordinates, residuals): at u, and at its probes if the slopes are not kept; those are changed.
     """
-    unit = units.at(h, u)
-    C = h.slopes if keeps_slopes(h, u) else _slopes(h, u, residual, units)
+    unit = noise.unit(_at(base, h, u))
+    C = h.slopes if keeps_slopes(h, u) else _slopes(base, h, u, residual, noise)
     tried = _judge(base, h, u, residual[0], C, unit)
     better = tried.likelihood > h.likelihood
     found, begin = (tried, _next(base, tried, C, residual[0], unit)) if better else (h, 0.5 * (u + h.u))
@@ -95,18 +85,24 @@ def _is_profile(h: Hypothesis) -> bool:
     return len(h.u) > FEW_SIZES and all(c.is_size and not c.logarithmic for c in h.coordinates)
 
 
-def _slopes(h: Hypothesis, u: Array, residual: Array, units: _Units) -> Array:
+def _at(base: BaseFit, h: Hypothesis, u: Array) -> Model:
+    """The base's model with a candidate at u."""
+    return base.everything.with_parameters(_values(h, u))
+
+
+def _slopes(base: BaseFit, h: Hypothesis, u: Array, residual: Array, noise: OwnNoise) -> Array:
     """Derivatives (residuals, coordinates) from the residuals at u and at each of its probes.
 
     With what a change of the noise in which residuals count makes.
     """
-    probes, unit = _probes(h, u), units.at(h, u)
-    there = np.stack([r * (unit / units.at(h, v)) for r, v in zip(residual[1:], probes, strict=True)])
+    probes = _probes(h, u)
+    there = noise.of([_at(base, h, v) for v in probes], residual[1:])
+    there *= noise.unit(_at(base, h, u))
     moved = np.array([v[j] - u[j] for j, v in enumerate(probes)])
     return np.asarray(((there - residual[0]) / np.where(moved == 0.0, 1.0, moved)[:, None]).T)
 
 
-def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis], units: _Units) -> list[Array]:
+def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis], noise: OwnNoise) -> list[Array]:
     """For each hypothesis the best of a few sizes: an effect that is linear near neutral may not be so farther away."""
     options: list[list[Array]] = []
     for h in hypotheses:
@@ -125,7 +121,7 @@ def _best_sizes(base: BaseFit, hypotheses: Sequence[Hypothesis], units: _Units) 
         return []
     residual = base.evidence.residuals(base.everything, vectors(base.everything, variants), ranking=True)
     with ThreadPoolExecutor(2) as pool:
-        likelihood = list(pool.map(lambda r, one: at_best(base, r, units.at(*one))[2], residual, each))
+        likelihood = list(pool.map(lambda r, one: at_best(base, r, noise.unit(_at(base, *one)))[2], residual, each))
     found, at = [], 0
     for own in options:
         found.append(own[int(np.argmax(likelihood[at : at + len(own)]))])
@@ -162,7 +158,7 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array, unit: 
     shift, after, value = at_best(base, here, unit)
     value -= sum(0.5 * (x / c.prior) ** 2 for c, x in zip(h.coordinates, u, strict=True))
     K, ridge, _offset = _system(base, h, u, C)
-    w = _weights(base, after, unit)
+    w = own_weights(base.evidence, after, unit)
     normal, sums = gathered(K, w, after)[0], block_sums(K, w, w * after, base.evidence.block)
     of_all = of_sizes = covariances(base, normal, sums, ridge)
     sizes = [j for j, c in enumerate(h.coordinates) if c.is_size]
@@ -178,17 +174,13 @@ def _judge(base: BaseFit, h: Hypothesis, u: Array, here: Array, C: Array, unit: 
     )
 
 
-def _weights(base: BaseFit, residual: Array, unit: Array | float) -> Array:
-    return np.asarray(weights(base.evidence, residual / unit, family_scales(base.evidence, residual / unit)) / unit)
-
-
 def _next(base: BaseFit, h: Hypothesis, C: Array, here: Array, unit: Array | float) -> Array:
     """u of the next Gauss-Newton step, within the bounds."""
     K, ridge, offset = _system(base, h, h.u, C)
     after, first = h.residual, len(base.names)
     step = np.zeros(len(h.u))
     for _ in range(3):
-        w = _weights(base, after, unit)
+        w = own_weights(base.evidence, after, unit)
         x = bounded_step(h, K, here, w, ridge, offset)
         after, step = here + along(K, x), x[first:]
     logs = np.array([c.logarithmic for c in h.coordinates])

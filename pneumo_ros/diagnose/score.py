@@ -14,7 +14,7 @@ equation seen through windows of two widths counts half by each.
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from pneumo_ros.diagnose.basefit import strain
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import points_of
-from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales, gathered, weights
+from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, gathered, own_weights
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.jit import entry
 
@@ -96,32 +96,29 @@ class Scoring:
         self.usual = {}
         self.usual = {family.name: family.best for family in self._families(model, residuals)}
 
-    def evidence(self, model: Model, *residuals: Array) -> Array:
-        """Log evidence (parts,) of the residuals over noise that `model` leaves in training, and in held-out runs.
-
-        Noise and discrepancy are those of the greatest likelihood in the runs whose residuals are given.
-        """
-        return _evidence(self._families(model, residuals))
-
     def at(self, model: Model, train: Array, held: Array) -> Best:
-        """The log evidence of what `model` leaves in training and held-out runs, its base parameters as they are."""
-        families = self._families(model, (train, held))
-        noise = {family.name: family.best for family in families}
-        return Best(_evidence(families), (train, held, np.zeros(0)), noise)
+        """The log evidence of the residuals over noise that `model` leaves in training, and in held-out runs.
 
-    def in_noise_of(self, other: Best, model: Model, best: Best) -> Best:
-        """A model's best fit; each family in the noise that another model found, where it gains more than in its own.
-
-        All have the same sensors. Where the noise may as well be a little larger and the discrepancy smaller, the
-        model that came upon it gains hundreds of nats, which are no merit of it.
+        Noise and discrepancy are those of the greatest likelihood in all of them; base parameters are as they are.
         """
-        evidence, noise = best.evidence.copy(), dict(best.noise)
-        own, again = (self._families(model, best.fit[:2], at.noise) for at in (best, other))
-        for before, after in zip(own, again, strict=True):
-            gained = after.evidence() - before.evidence()
-            if gained.sum() > 0.0:
-                evidence, noise[after.name] = evidence + gained, after.best
-        return Best(evidence, best.fit, noise)
+        return _reached(self._families(model, (train, held)), (train, held, np.zeros(0)))
+
+    def in_noise_of(self, others: Sequence[Best], model: Model, best: Best) -> list[Best]:
+        """A model's best fit, each family in the noise that another one found, if it gains more there than in its own.
+
+        For each of the others. All have the same sensors. Where the noise may as well be a little larger and the
+        discrepancy smaller, the model that came upon it gains hundreds of nats, which are no merit of it.
+        """
+
+        def evidences(noise: Mapping[str, Noise]) -> list[Array]:
+            return [family.evidence() for family in self._families(model, best.fit[:2], noise)]
+
+        own, found = evidences(best.noise), list[Best]()
+        for other in others:
+            gains = [there - here for there, here in zip(evidences(other.noise), own, strict=True)]
+            more = np.sum([gain for gain in gains if gain.sum() > 0.0], axis=0)
+            found.append(replace(best, evidence=best.evidence + more))
+        return found
 
     def _families(
         self, model: Model, residuals: Sequence[Array], usual: Mapping[str, Noise] | None = None
@@ -145,9 +142,8 @@ class Scoring:
 
         def valued(one: Fit) -> tuple[float, Best, list[_Family]]:
             families = self._families(model, one[:2])
-            found = _evidence(families)
-            best = Best(found, one, {family.name: family.best for family in families})
-            return float(found.sum()) - strain(one[2] + fits[0].offset), best, families
+            found = _reached(families, one)
+            return float(found.evidence.sum()) - strain(one[2] + fits[0].offset), found, families
 
         with ThreadPoolExecutor(threads) as pool:
             best = max(pool.map(valued, starts), key=lambda one: one[0])
@@ -277,6 +273,11 @@ def _evidence(families: Sequence[_Family]) -> Array:
     return np.asarray(np.sum([family.evidence() for family in families], axis=0))
 
 
+def _reached(families: Sequence[_Family], fit: Fit) -> Best:
+    """A fit of which all families are known, with its log evidence and the noise it found."""
+    return Best(_evidence(families), fit, {family.name: family.best for family in families})
+
+
 def _peak(options: Sequence[float], value: Callable[[float], float], near: float) -> float:
     """The option of the largest value, which rises up to it and falls beyond; sought from the option next to `near`."""
     at = int(np.argmin(np.abs(np.array(options) - near)))
@@ -371,7 +372,7 @@ def occam(base: BaseFit, h: Hypothesis, spread: float = 1.0) -> float:
 
     Their prior is `spread` usual sizes, or a factor e; what base parameters may replace is no information.
     """
-    w = weights(base.evidence, h.residual, family_scales(base.evidence, h.residual))
+    w = own_weights(base.evidence, h.residual)
     normal, p = gathered((base.slopes, spread * h.slopes), w, h.residual)[0], len(base.names)
     own = normal[:p, :p] + np.eye(p)
     information = normal[p:, p:] - normal[p:, :p] @ np.linalg.solve(own, normal[:p, p:])

@@ -103,8 +103,8 @@ class Momentum:
 
     def noise_by_acceleration(self, bump: Bump) -> Array:
         """The part (windows,) of it that is in proportion to the moving mass."""
-        windows = len(bump.centres(len(self.run)))
-        return np.full(windows, self.run.noise["position_m"] * moving_mass(self.model) * np.linalg.norm(bump.second))
+        by_position = bump.noise([(bump.second, np.ones(len(self.run)))])
+        return np.asarray(self.run.noise["position_m"] * moving_mass(self.model) * by_position)
 
     def usable(self, bump: Bump) -> Mask:
         """Windows with sliding and measurement throughout, away from the ends of the stroke."""

@@ -11,7 +11,8 @@ from pneumo_ros.wording.additions import ParameterWords, parameter
 from pneumo_ros.wording.naming import NORMAL, listed
 from pneumo_ros.wording.table import Table
 
-MANY, SHOWN = 6, 3  # sizes of an effect that are listed each, and of those that are more
+MANY, SHOWN = 6, 3  # sizes of an effect that are listed each, as only a profile has more than four; and of a profile
+
 # equation -> the parts of the machine that it describes
 PLACES = {
     "momentum": "piston, rod, guide and load",

@@ -58,7 +58,7 @@ def slow(seed: int, size: float, time: float = 1.0) -> Array:
 def gained(without: Array, with_it: Array, scoring: Scoring | None = None) -> float:
     """Nats that training and held-out runs gain, with the same residuals in both."""
     scoring = scoring or Scoring(evidence(), evidence())
-    return float(np.sum(scoring.evidence(MODEL, with_it, with_it) - scoring.evidence(MODEL, without, without)))
+    return float(np.sum(scoring.at(MODEL, with_it, with_it).evidence - scoring.at(MODEL, without, without).evidence))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -91,9 +91,9 @@ def test_a_mass_that_amplifies_noise_is_judged_by_its_own_noise(seed: int) -> No
     """A payload as heavy as the piston doubles the noise; it once was called worse by hundreds of nats."""
     heavy = MODEL.with_parameters({"piston.mass": 2.0 * MODEL["piston.mass"]})
     scoring, quiet, loud = Scoring(evidence(), evidence()), noise(seed), noise(seed, scale=2.0)
-    change = scoring.evidence(heavy, loud, loud) - scoring.evidence(MODEL, quiet, quiet)
+    change = scoring.at(heavy, loud, loud).evidence - scoring.at(MODEL, quiet, quiet).evidence
     assert abs(float(change.sum())) < 1e-6
-    missed = scoring.evidence(heavy, loud, loud) - scoring.evidence(MODEL, quiet + slow(seed, 2.0), quiet)
+    missed = scoring.at(heavy, loud, loud).evidence - scoring.at(MODEL, quiet + slow(seed, 2.0), quiet).evidence
     assert float(missed.sum()) > 100.0
 
 
@@ -102,7 +102,7 @@ def test_a_discrepancy_counts_in_the_noise_that_a_mass_amplifies(seed: int) -> N
     """A load of the piston's mass that is there: all of its residual is twice as large, noise and rest alike."""
     heavy = MODEL.with_parameters({"piston.mass": 2.0 * MODEL["piston.mass"]})
     scoring, small = Scoring(evidence(), evidence()), noise(seed) + slow(seed, 0.5, 0.03)
-    change = scoring.evidence(heavy, 2.0 * small, 2.0 * small) - scoring.evidence(MODEL, small, small)
+    change = scoring.at(heavy, 2.0 * small, 2.0 * small).evidence - scoring.at(MODEL, small, small).evidence
     assert abs(float(change.sum())) < 1.0
 
 
@@ -113,7 +113,7 @@ def test_a_scale_of_the_noise_that_only_a_candidate_found_is_no_merit_of_it(seed
     scoring.usual = {"momentum 100 ms": (0.5, 0.03, 0.9)}  # as the model without the candidate came upon it
     own = scoring.at(MODEL, left, left)
     other = replace(own, fit=(0.0 * left, 0.0 * left, np.zeros(0)), noise={"momentum 100 ms": (0.0, 0.03, 1.0)})
-    assert float((scoring.in_noise_of(other, MODEL, own).evidence - own.evidence).sum()) > 100.0
+    assert float((scoring.in_noise_of([other], MODEL, own)[0].evidence - own.evidence).sum()) > 100.0
 
 
 def test_the_same_noise_is_no_gain() -> None:
@@ -121,7 +121,7 @@ def test_the_same_noise_is_no_gain() -> None:
     left, scoring = noise(3, scale=1.03), Scoring(evidence(), evidence())
     scoring.usual = {"momentum 100 ms": (0.0, 0.03, 1.0)}
     own = scoring.at(MODEL, left, left)
-    again = scoring.in_noise_of(own, MODEL, own)
+    again = scoring.in_noise_of([own], MODEL, own)[0]
     assert again.evidence == pytest.approx(own.evidence, abs=1e-9)
 
 
@@ -244,7 +244,7 @@ def test_base_parameters_are_fitted_with_the_correlation_of_what_no_model_has(se
     best = scoring.best(MODEL, fits, [begin])
     found, (train, held, shift) = best.evidence, best.fit
     assert abs(shift[0] + 0.5) < 0.5 * abs(plain[0] + 0.5)
-    assert float(found[0]) > float(scoring.evidence(MODEL, *begin[:2])[0]) + 50.0
+    assert float(found[0]) > float(scoring.at(MODEL, *begin[:2]).evidence[0]) + 50.0
     assert train == pytest.approx(residual + slopes @ shift)
     assert held == pytest.approx(train)
 
@@ -276,7 +276,8 @@ def test_what_training_hardly_determines_decides_nothing_on_held_out_runs() -> N
     chance = without[0] - 0.5 * once[:, 0], without[1], np.zeros(1)  # an effect that meets the few windows by chance
     alone, beside = (scoring.best(MODEL, fits, [one]).evidence for one in (without, chance))
     plain = (
-        scoring.evidence(MODEL, *moved(chance, fits, np.array([0.5]))[:2])[1] - scoring.evidence(MODEL, *without[:2])[1]
+        scoring.at(MODEL, *moved(chance, fits, np.array([0.5]))[:2]).evidence[1]
+        - scoring.at(MODEL, *without[:2]).evidence[1]
     )
     assert plain < -20.0
     assert abs(beside[1] - alone[1]) < 5.0
