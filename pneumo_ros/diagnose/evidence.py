@@ -23,6 +23,8 @@ from pneumo_ros.diagnose.follow import Followed, Frame, follow, follow_each, fra
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.lanes import acting_in
+from pneumo_ros.plant.reach import fades
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
 from pneumo_ros.runs.sensors import delays_of
@@ -160,6 +162,17 @@ def _pool(process: int, threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads)
 
 
+def adding_mass(model: Model, parameters: Array) -> NDArray[np.bool_]:
+    """Parameter vectors (variants, parameters) by which an effect of the model may add to the moving mass."""
+    effects, found = model.composition.effects, np.zeros(len(parameters), dtype=bool)
+    acts = iter(acting_in(effects, parameters).T)
+    for effect in effects:
+        own = next(acts) if fades(effect) else True
+        if any("added_mass" in function.writes for function in effect.functions.values()):
+            found |= own
+    return found
+
+
 def without_states(model: Model) -> Model:
     """The model with the effects that have states of their own switched off; itself if it has none, or none acts."""
     effects = [effect for effect in model.composition.effects if effect.states]
@@ -196,6 +209,7 @@ class RunEvidence:
         self.rested = np.array(rested, dtype=np.int64)
         self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
         self.lowered = np.zeros(len(self.breakaways))
+        self._kept = dict[bool, tuple[list[float], list[Measured]]]()  # of a model, along the frame and the noisier one
 
     def with_breakaways(self, noise: Array, lowered: Array) -> "RunEvidence":
         """The same with another noise of the breakaways (breakaways,) [N], and how far they lie below the level."""
@@ -213,9 +227,9 @@ class RunEvidence:
         """Residuals (variants, usable windows) in their units, family after family; along its frame or `noisier`."""
         frame = self.noisier if noisier else self.frame
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
-        own = measured = [self._measured(model, f, frame.states) for f in self.families]
+        own = measured = self._along(model, noisier)
         along: int | None = None
-        late = self._late(model, parameters)
+        late, loaded = self._late(model, parameters), adding_mass(model, parameters)
         for variant in follow_each(model, frame, parameters, ranking):
             if variant.along != along:
                 along = variant.along
@@ -225,11 +239,21 @@ class RunEvidence:
                 ]
             q = parameters[variant.index]
             parts = [
-                self._value(model, q, variant, m, late[variant.index])[f.usable]
+                self._value(model, q, variant, m, late[variant.index], loaded[variant.index])[f.usable]
                 for f, m in zip(self.families, own, strict=True)
             ]
             result[variant.index] = np.concatenate(parts)
         return result
+
+    def _along(self, model: Model, noisier: bool) -> list[Measured]:
+        """The measured parts of all families along its frame or the noisier one; those of equal chambers are kept."""
+        own = ["air.heat_capacity_ratio", "air.gas_constant", "air.temperature"] if model.chambers else []
+        own += [name for chamber in model.chambers for name in (chamber.volume, chamber.area)]
+        key = [model[name] for name in own]
+        if noisier not in self._kept or self._kept[noisier][0] != key:
+            states = (self.noisier if noisier else self.frame).states
+            self._kept[noisier] = key, [self._measured(model, family, states) for family in self.families]
+        return self._kept[noisier][1]
 
     def _measured(self, model: Model, family: Family, states: Array) -> Measured:
         """The part of an equation's residual that depends on the frame's states alone."""
@@ -247,13 +271,15 @@ class RunEvidence:
         late = delays_of(model, parameters)[:, model.composition.sensed.index("y")]
         return np.rint(late / self.run.sample_time).astype(np.int64)
 
-    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: int) -> Array:
+    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: int, loaded: bool) -> Array:
         if measured is None:
             return self._slips(model, q, variant, late)
         if isinstance(measured, MeasuredChamber):
             return measured.value(variant.claimed[:, measured.column - 1])
-        rows = measured.bump.centres(len(variant.frame))
-        mass = self.piston + self._see(model, q, variant.states(rows), rows)["added_mass"]
+        mass: Array | float = self.piston
+        if loaded:
+            rows = measured.bump.centres(len(variant.frame))
+            mass = mass + self._see(model, q, variant.states(rows), rows)["added_mass"]
         return measured.value(mass, variant.claimed[:, 0])
 
     def _see(self, model: Model, q: Array, states: Array, rows: Index) -> dict[str, Array]:

@@ -18,7 +18,7 @@ from pneumo_ros.plant.lanes import acting_in
 from pneumo_ros.plant.reach import fades
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
-from pneumo_ros.runs.sensors import QUICK, SHORT, driven_lanes, longest_step, parts_of
+from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, driven_lanes, longest_step, parts_of, shifted
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -105,25 +105,49 @@ class Followed:
 def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = False) -> Iterator[Followed]:
     """States and claimed derivatives of a run by each parameter vector; those along the same states one after another.
 
-    Where a vector has sensor effects, the measured states are first corrected for them:
-    x = measured - (observed(x) - x), twice. `ranking`: only as exact as the ranking of candidates needs: a short sample
-    is one part, with an error of 1 % of an effect.
+    Where a vector has sensor effects, the measured states are first corrected for them: at once, or where a sensor has
+    states of its own, which have to be driven, by x = measured - (observed(x) - x), twice. `ranking`: only as exact as
+    the ranking of candidates needs: a short sample is one part, with an error of 1 % of an effect.
     """
     parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
-    corrects, rest, m = sensing(model, parameters), model.state(), frame.states.shape[1]
-    for rows in _some(np.flatnonzero(~corrects)):
+    corrects, lags = sensing(model, parameters), sensing(model, parameters, with_states=True)
+    rest = model.state()
+    for rows in _some(np.flatnonzero(~lags)):
         own = _moving(model, parameters[rows])
         columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
-        states, mean = _drive_lanes(model, frame.run, frame.states, parameters[rows], parts, own, true_sensors=True)
-        for k, x, d in zip(rows, states, mean, strict=True):
-            yield Followed(int(k), frame.states, x, columns, rest, d, None)
-    columns = np.arange(m, len(rest))
-    for rows in _some(np.flatnonzero(corrects)):
-        made, first = _corrected(model, frame, parameters[rows], parts)
+        given, first = _at_once(model, frame, parameters[rows], corrects[rows])
+        states, mean = _drive_lanes(model, frame.run, given, parameters[rows], parts, own, true_sensors=True)
         for j in np.argsort(first, kind="stable"):
-            x, d = made[j]
-            yield Followed(int(rows[j]), x[:, :m], x[:, m:], columns, rest, d, int(rows[first[j]]))
-        del made, x, d  # before the next ones are made
+            k, seen = rows[j], frame.states if given.ndim == 2 else given[j]
+            yield Followed(
+                int(k), seen, states[j], columns, rest, mean[j], int(rows[first[j]]) if corrects[k] else None
+            )
+    for rows in _some(np.flatnonzero(lags)):
+        own = _moving(model, parameters[rows])
+        columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
+        made, first = _corrected(model, frame, parameters[rows], parts, own)
+        for j in np.argsort(first, kind="stable"):
+            yield Followed(int(rows[j]), made[j][0], made[j][1], columns, rest, made[j][2], int(rows[first[j]]))
+        del made  # before the next ones are made
+
+
+def _at_once(model: Model, frame: Frame, parameters: Array, corrects: NDArray[np.bool_]) -> tuple[Array, Index]:
+    """Frame states (n, frame), or (lanes, n, frame) where sensors differ, without what sensors add at once.
+
+    And the first lane (lanes,) of each group of equal sensors; of lanes whose sensors read right, -1.
+    """
+    found = np.full(len(parameters), -1)
+    if not corrects.any():
+        return frame.states, found
+    given, own = np.repeat(frame.states[None], len(parameters), axis=0), np.flatnonzero(corrects)
+    first, group = alike_sensors(model, parameters[own])
+    for k, lane in enumerate(own[first]):
+        none = np.zeros((1, len(frame.states), len(model.composition.sensed)))
+        shift = at_rest(model, frame.states, none, parameters[lane : lane + 1], frame.run, _SETTLED)[0]
+        reads = np.isfinite(shift).all()
+        given[own[group == k]] = shifted(frame.states, shift, frame.run.sample_time) if reads else np.nan
+    found[own] = own[first][group]
+    return given, found
 
 
 def _moving(model: Model, parameters: Array) -> list[str]:
@@ -138,32 +162,34 @@ def _some(own: Index) -> Iterator[Index]:
     return (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE))
 
 
-def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[list[tuple[Array, Array]], Index]:
+def _corrected(
+    model: Model, frame: Frame, parameters: Array, parts: int, names: Sequence[str]
+) -> tuple[list[tuple[Array, Array, Array]], Index]:
     """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors.
 
-    The states and claimed derivatives of each, and the first lane (lanes,) of its group.
+    Frame states, the states of `names` and claimed derivatives of each, and the first lane (lanes,) of its group.
     """
     first, group = alike_sensors(model, parameters)
     own = parameters[first]
     given, own_states, own_mean = driven_lanes(
         model, frame.states, frame.run, own,
-        lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts), _SETTLED,
+        lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts, names), names, _SETTLED,
     )  # fmt: skip
-    made = [(own_states[k], own_mean[k]) for k in group]  # not copied: they are large
+    made = [(given[k], own_states[k], own_mean[k]) for k in group]  # not copied: they are large
     others = np.setdiff1d(np.arange(len(group)), first)
     if len(others):
         along = given[0] if len(first) == 1 else given[group[others]]
-        each = zip(*_drive_lanes(model, frame.run, along, parameters[others], parts), strict=True)
+        each = zip(*_drive_lanes(model, frame.run, along, parameters[others], parts, names), strict=True)
         for k, (x, d) in zip(others, each, strict=True):
-            made[k] = x, d
+            made[k] = given[group[k]], x, d
     return made, first[group]
 
 
 def _drive_lanes(
-    model: Model, run: Run, given: Array, parameters: Array, parts: int, states: Sequence[str] | None = None,
+    model: Model, run: Run, given: Array, parameters: Array, parts: int, states: Sequence[str],
     true_sensors: bool = False,
 ) -> tuple[Array, Array]:  # fmt: skip
-    """States, or those named (lanes, n, states), and claimed derivatives of lanes driven along given states."""
+    """The states named (lanes, n, states), and claimed derivatives of lanes driven along given states."""
     step = longest_step(model, run, parts, true_sensors)
     rest = model.state()[given.shape[-1] :]
     columns = ("v", *(chamber.state for chamber in model.chambers))
@@ -210,12 +236,18 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     return first, np.ravel(group)
 
 
-def sensing(model: Model, parameters: Array) -> NDArray[np.bool_]:
-    """Which parameter vectors (variants, parameters) make any sensor of the model differ from its state."""
+def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArray[np.bool_]:
+    """Which parameter vectors (variants, parameters) make any sensor of the model differ from its state.
+
+    `with_states`: of sensors whose readings depend on more than parameters and the frame's states, as a late one.
+    """
     found = np.zeros(len(parameters), dtype=bool)
     names = list(model.parameters)
+    keys = {name.partition(".")[2] for name in names} - {*SIGNALS, *model.states}
     for effect in filter(reads_wrong, model.composition.effects):
         own = read_from(effect)
+        if with_states and own <= {"y", "v", *SENSED, *SENSED.values(), *effect.parameters, *keys}:
+            continue
         fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items() if key in own]
         acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
         found |= np.any(acts, axis=0) if acts else True

@@ -36,7 +36,9 @@ STRAINED = (
 )
 OPEN = 3.0  # V: the valve of the usual machine is open
 IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
-REWEIGHTED = 5  # least-squares solutions, each weighted by the residual of the previous one
+# Least-squares solutions, each weighted by the residual of the previous one, at most; and the share of all scales below
+# which their changes ask for no other one
+REWEIGHTED, SETTLED = 5, 1e-3
 FREE = 1e-3  # least prior information about a size in steps: it is free within some thirty steps, as sizes are
 SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
 
@@ -120,8 +122,12 @@ def _linear(
     offset = np.concatenate([base.offset, np.zeros(len(sizes))])
     after, x = base.residual, np.zeros(len(ridge))
     low, high = _room(effect, u, sizes, p)
+    before = np.full(len(base.evidence.names), np.inf)
     for _ in range(REWEIGHTED):
         scale = family_scales(base.evidence, after)
+        if np.all(np.abs(scale - before) < SETTLED * scale):
+            break
+        before = scale
         w = weights(base.evidence, after, scale)
         x, bread = solve(K, base.residual, w, ridge, offset)
         if np.any((x < low) | (x > high)):  # else a negative mass would explain noise that it amplifies

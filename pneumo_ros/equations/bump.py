@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.plant.jit import summed
+
 Array = NDArray[np.float64]
 
 
@@ -55,6 +57,17 @@ class Bump:
         shares = quarters @ columns.T
         return np.asarray(sum(shares[k : k + count, k] for k in range(parts)))
 
+    def means(self, rates: Array, factor: Array | None = None) -> Array:
+        """Weighted sums (windows,) of rates (n,), means over the interval before each sample, times a factor (n,).
+
+        At each sample stands the mean of the intervals on both sides: a sum over samples is then the integral, with
+        input steps included. As `apply` of phi to those means, in a third of the time and beside other threads.
+        """
+        found = np.empty(max((len(rates) - self.width) // self.step + 1, 0))
+        factor = np.ones(len(rates)) if factor is None else factor
+        _weigh(0.5 * (self.phi[1:] + self.phi[:-1]), self.step, rates, factor, found)  # phi is 0 at both ends
+        return found
+
     def centres(self, samples: int) -> NDArray[np.int64]:
         """Sample at the middle of each window of a signal of that many samples."""
         first = np.arange(max(samples - self.width + 1, 0), step=self.step)
@@ -73,3 +86,17 @@ class Bump:
         """
         gain = sum(weights * self._windows(signal) for weights, signal in terms)
         return np.asarray(np.sqrt(np.sum(np.square(gain), axis=1)))
+
+
+@summed
+def _weigh(weights, step, rates, factor, found):  # type: ignore[no-untyped-def]
+    """found (windows,): sums of rates (n,) times factor (n,) by weights (some,), from the second sample of a window."""
+    own = np.empty(len(rates))
+    for i in range(len(rates)):
+        own[i] = rates[i] * factor[i]
+    for k in range(len(found)):
+        window = own[k * step + 1 : k * step + 1 + len(weights)]
+        total = 0.0
+        for j in range(len(weights)):
+            total += weights[j] * window[j]
+        found[k] = total

@@ -142,7 +142,7 @@ class Balance:
         # What the claim holds of the smoothed velocity is taken off as it was claimed, along the same straight lines.
         per_pressure = straight(np.reciprocal, p)
         squeezed = straight(self._squeezed, states[:, 0], states[:, 1], p)
-        rate = bump.apply(-bump.first, log) - bump.apply(bump.phi, centred(squeezed * per_pressure))
+        rate = bump.apply(-bump.first, log) - bump.means(squeezed, per_pressure)
         return MeasuredChamber(bump, self.column, self._content(bump, states), rate, per_pressure)
 
     def noise(self, bump: Bump, run: Run, states: Array, pressure_rate: Array, steep: Array) -> Array:
@@ -190,12 +190,12 @@ class MeasuredMotion:
         """From a position (n,) [m]."""
         return cls(bump, bump.apply(bump.second, position))
 
-    def value(self, mass: Array, acceleration: Array) -> Array:
+    def value(self, mass: Array | float, acceleration: Array) -> Array:
         """Residual (windows,) [N] of `mass` (windows,) [kg], with the acceleration (n,) that a model claims.
 
-        The claim is the mean over the interval before each sample.
+        The mass may be the same in all windows. The claim is the mean over the interval before each sample.
         """
-        return np.asarray(mass * (self.acceleration - self.bump.apply(self.bump.phi, centred(acceleration))))
+        return np.asarray(mass * (self.acceleration - self.bump.means(acceleration)))
 
 
 @dataclass(frozen=True)
@@ -218,8 +218,7 @@ class MeasuredChamber:
 
         The claim is the mean over the interval before each sample.
         """
-        claimed = self.bump.apply(self.bump.phi, centred(pressure_rate * self.per_pressure))
-        return np.asarray(self.content * (self.rate - claimed))
+        return np.asarray(self.content * (self.rate - self.bump.means(pressure_rate, self.per_pressure)))
 
 
 def measured_throughout(run: Run, bump: Bump) -> Mask:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.equations.bump import Bump
-from pneumo_ros.equations.equations import Balance, Momentum, centred, drive_along, measured_throughout, moving_mass
+from pneumo_ros.equations.equations import Balance, Momentum, drive_along, measured_throughout, moving_mass
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
@@ -67,7 +67,7 @@ def force_error(model: Model, run: Run) -> float:
     states, claimed = _along(model, run)
     mass = moving_mass(model)
     drive = drive_along(model, run, states) if model.force_driven else model.outputs(states)["drive"]
-    error = mass * (bump.apply(bump.second, states[:, 0]) - bump.apply(bump.phi, centred(claimed[:, 1])))
+    error = mass * (bump.apply(bump.second, states[:, 0]) - bump.means(claimed[:, 1]))
     inside = measured_throughout(run, bump)
     return float(100.0 * np.linalg.norm(error[inside]) / np.linalg.norm(bump.apply(bump.phi, drive)[inside]))
 

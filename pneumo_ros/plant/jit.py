@@ -24,6 +24,7 @@ if PURE_PYTHON:
     inline: Any = _as_it_is
     block: Any = _as_it_is
     entry: Any = _as_it_is
+    summed: Any = _as_it_is
     power_of_two, exponent, mantissa = maths.power_of_two, maths.exponent, maths.mantissa
 
     def get(cells: Any, first: int, i: int) -> Any:
@@ -49,6 +50,8 @@ else:
     inline = njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
     block = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)  # called, not copied
     entry = njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
+    # Terms of a sum in any order, or no sum would vectorise: for what is no part of the plant.
+    summed = njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, fastmath={"reassoc"})
 
     # LLVM gives up merging the memory checks of a loop after 100 comparisons; with forty effects, loops over lanes
     # would stay scalar and take eight times as long. LLVM ends the process if an option is given twice.

@@ -14,10 +14,12 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-# frames (lanes, n, frame) and lane numbers -> states and mean derivatives, both (lanes, n, states)
+# frames (lanes, n, frame) and lane numbers -> states (lanes, n, own), some of those beside the frame's, and mean
+# derivatives (lanes, n, states)
 Drive = Callable[[Array, Index], tuple[Array, Array]]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
+_AT_REST = 10  # at most, without their own states: each step leaves a share of the error that is the gain's
 LAST = 20  # samples at the end by which a reading goes on
 QUICK = 2  # parts of a sample along a measured motion: their errors cancel in differences of two variants
 SHORT = 1.01e-3  # s: a sample that is cut into few parts
@@ -41,20 +43,21 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
 
     In steps of half a millisecond where the samples are that fine: first guesses need no more.
     """
-    rest, parts = model.state()[frame.shape[1] :], parts_of(model) if run.sample_time < SHORT else PARTS
+    m = frame.shape[1]
+    rest, parts = model.state()[m:], parts_of(model) if run.sample_time < SHORT else PARTS
     held, step = run.averaged(model.inputs, parts), STEP if parts == PARTS else longest_step(model, run, parts)
 
     def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
         states, rates = model.follow(
             given[0], held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts
         )
-        return states[None], rates[None]
+        return states[None, :, m:], rates[None]
 
     if model.composition.true_sensors:
-        states, rates = drive(frame[None], np.zeros(1, dtype=np.int64))
+        given, (states, rates) = frame[None], drive(frame[None], np.zeros(1, dtype=np.int64))
     else:
-        _, states, rates = driven_lanes(model, frame, run, None, drive, _ENOUGH)
-    return states[0], rates[0]
+        given, states, rates = driven_lanes(model, frame, run, None, drive, model.states[m:], _ENOUGH)
+    return np.concatenate([given[0], states[0]], axis=1), rates[0]
 
 
 def parts_of(model: Model, enough: int = QUICK) -> int:
@@ -72,12 +75,14 @@ def longest_step(model: Model, run: Run, parts: int, true_sensors: bool = False)
 
 
 def driven_lanes(
-    model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, enough: Sequence[float]
-) -> tuple[Array, Array, Array]:
-    """Frame states without sensor effects (lanes, n, frame), and states and rates from `drive` along them.
+    model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, names: Sequence[str],
+    enough: Sequence[float],
+) -> tuple[Array, Array, Array]:  # fmt: skip
+    """Frame states without sensor effects (lanes, n, frame), and states, those of `names`, and rates along them.
 
-    Readings that are late are first taken at their own times. Then the readings r(x) are inverted by at most two steps
-    of the fixed point x = x_measured - (r(x) - x); each step drives the sensors' own states again. The velocity is
+    Readings that are late are first taken at their own times, and others inverted as if the sensors' own states were at
+    rest, which is all that a gain needs. Then the readings r(x) are inverted by at most two steps of the fixed point
+    x = x_measured - (r(x) - x); each step drives the sensors' own states again. The velocity is
     corrected by the derivative of the correction of position. Each lane stops when its correction changes by no more
     than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane whose readings are not finite has no
     states: as measured, it would be that of a machine whose sensors are right. parameters (lanes, parameters), or None
@@ -85,18 +90,19 @@ def driven_lanes(
     """
     count = 1 if parameters is None else len(parameters)
     moving, before = np.arange(count), advanced(model, frame, parameters, run)
+    inverted = at_rest(model, frame, before, parameters, run, enough)
+    before += np.where(np.isfinite(inverted).all(axis=(1, 2), keepdims=True), inverted, 0.0)
     given = np.repeat(frame[None], count, axis=0)
     for lane in np.flatnonzero(before.any(axis=(1, 2))):
         given[lane] = shifted(frame, before[lane], run.sample_time)
     states, rates = drive(given, moving)
     for _ in range(_ITERATIONS):
-        some = states if len(moving) == count else states[moving]  # all of them are large
-        shift = taken_back(model, some, None if parameters is None else parameters[moving], run)
-        del some
+        own = None if parameters is None else parameters[moving]
+        shift = taken_back(model, given[moving], [states[lane] for lane in moving], names, own, run)
         still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
         lost = ~np.isfinite(shift).all(axis=(1, 2))
         if parameters is not None:
-            states[moving[lost]] = rates[moving[lost]] = np.nan
+            given[moving[lost]] = states[moving[lost]] = rates[moving[lost]] = np.nan
         still &= ~lost
         moving, before = moving[still], shift[still]
         if not len(moving):
@@ -126,6 +132,26 @@ def advanced(model: Model, frame: Array, parameters: Array | None, run: Run) -> 
     return found
 
 
+def at_rest(
+    model: Model, frame: Array, late: Array, parameters: Array | None, run: Run, enough: Sequence[float]
+) -> Array:
+    """What else to add to the readings (lanes, n, sensed), beside `late`, if the sensors' own states stay at rest.
+
+    By the same fixed point to within `enough`, but without driving anything. Not finite in a lane whose readings are
+    not.
+    """
+    found, none = np.zeros_like(late), [np.empty((len(frame), 0))]
+    for lane in range(len(late)):
+        own = None if parameters is None else parameters[lane : lane + 1]
+        for _ in range(_AT_REST):
+            x = shifted(frame, late[lane] + found[lane], run.sample_time)
+            shift = taken_back(model, x[None], none, (), own, run)[0]
+            change, found[lane] = np.abs(shift - found[lane]).max(axis=0), shift
+            if not np.isfinite(change).all() or np.all(change <= enough[: len(change)]):
+                break
+    return found
+
+
 def delays_of(model: Model, parameters: Array) -> Array:
     """By how much sensors give each state late [s] (lanes, sensed): the parameters of that role of their effects."""
     names, sensed = list(model.parameters), model.composition.sensed
@@ -137,17 +163,26 @@ def delays_of(model: Model, parameters: Array) -> Array:
     return found
 
 
-def taken_back(model: Model, states: Array, parameters: Array | None, run: Run) -> Array:
-    """What to add to the readings (lanes, n, sensed) of position and pressures to get these states (lanes, n, states).
+def taken_back(
+    model: Model, given: Array, states: Sequence[Array], names: Sequence[str], parameters: Array | None, run: Run
+) -> Array:
+    """What to add to the readings (lanes, n, sensed) of position and pressures to get these states.
 
-    parameters (lanes, parameters) or None for the model's own.
+    given (lanes, n, frame), states: (n, names) of each lane; all others rest. parameters (lanes, parameters) or None
+    for the model's own.
     """
     held = run.inputs(model.inputs)
     held = np.concatenate([held[:PARTS], held])  # row k is read under the last inputs before it
-    first, dt = np.zeros(len(states), dtype=np.int64), run.sample_time
-    read = sense(model, states, parameters, held, first, sample_time=dt, start=run.begin - dt, parts=PARTS)
-    columns = [model.states.index(name) for name in model.composition.sensed]
-    return np.asarray(states[:, :, columns] - read)
+    first, dt = np.zeros(1, dtype=np.int64), run.sample_time
+    columns = [model.states.index(name) for name in names]
+    sensed = [model.states.index(name) for name in model.composition.sensed]
+    every, found = np.tile(model.state(), (1, given.shape[1], 1)), np.empty((*given.shape[:2], len(sensed)))
+    for lane, own in enumerate(states):  # one after another, as all states are large
+        every[0, :, : given.shape[2]], every[0, :, columns] = given[lane], own.T
+        q = None if parameters is None else parameters[lane : lane + 1]
+        read = sense(model, every, q, held, first, sample_time=dt, start=run.begin - dt, parts=PARTS)
+        found[lane] = given[lane][:, sensed] - read[0]
+    return found
 
 
 def shifted(frame: Array, shift: Array, sample_time: float) -> Array:

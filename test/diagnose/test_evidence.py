@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from identify.making import own, rig
 
-from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.evidence import Evidence, adding_mass
 from pneumo_ros.diagnose.hypothesis import everything, family_scales, missing, vectors
 from pneumo_ros.equations.weak import equation_residuals
 
@@ -51,6 +51,23 @@ def test_many_variants_are_the_same_as_each_alone_sensors_included() -> None:
     assert together[0] == pytest.approx(evidence.residual(model), abs=1e-6)
     moved = [float(np.abs(r - together[0]).max()) for r in together[1:]]
     assert min(moved) > 1.0, "every variant shows"
+
+
+def test_only_effects_that_carry_a_load_add_to_the_mass() -> None:
+    model, _, _ = own("steps")
+    neutral = {"payload_mass.mass_added": 0.0, "load_compliance.load_share": 0.0, "viscous_friction.coefficient": 0.0}
+    effects = ["payload_mass", "load_compliance", "viscous_friction"]
+    loaded = model.with_effects([*model.effects, *effects], neutral)
+    variants = [{}, *({name: 0.2} for name in neutral)]
+    assert adding_mass(loaded, vectors(loaded, variants)).tolist() == [False, True, True, False]
+
+
+def test_what_is_kept_of_the_measured_states_is_that_of_the_chambers_asked_for() -> None:
+    model, _, run = own("steps")
+    other = model.with_parameters({"air.temperature": 1.1 * model["air.temperature"]})
+    evidence = Evidence(model, [run])
+    evidence.residual(model)
+    np.testing.assert_array_equal(evidence.residual(other), Evidence(model, [run]).residual(other))
 
 
 @pytest.mark.parametrize("ranking", [False, True])

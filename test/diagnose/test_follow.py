@@ -56,6 +56,31 @@ def test_only_a_play_before_the_sensor_asks_for_corrected_states() -> None:
     assert sensing(model, rows).tolist() == [False, False, True, True]
 
 
+def test_only_sensors_with_states_of_their_own_have_to_be_driven() -> None:
+    """A gain or an offset is taken back at once."""
+    names, rows = list(LATE.parameters), np.tile(LATE.values, (3, 1))
+    delay, offset = (
+        [names.index(f"{effect}.{key}") for key in keys]
+        for effect, keys in (
+            ("position_sensor_delay", ("delay", "low_pass")), ("pressure_sensor_offset", ("offset_a", "offset_b")),
+        )
+    )  # fmt: skip
+    rows[:2, delay] = 0.0
+    rows[0, offset] = 0.0
+    assert sensing(LATE, rows).tolist() == [False, True, True]
+    assert sensing(LATE, rows, with_states=True).tolist() == [False, False, True]
+
+
+def test_a_wrong_gain_is_taken_back_exactly() -> None:
+    """Twice through the fixed point, as with states that are driven, left a millionth of the pressure."""
+    wrong = {"pressure_sensor_gain.error_a": 0.05, "pressure_sensor_gain.error_b": 0.0}
+    model = MODEL.with_effects([*MODEL.effects, "pressure_sensor_gain"], wrong)
+    frame = frame_of(RUN, model.chambers)
+    (found,) = follow_each(model, frame, model.values[None])
+    np.testing.assert_allclose(1.05 * found.frame[:, 2], frame.states[:, 2], rtol=1e-7)
+    np.testing.assert_array_equal(found.frame[:, [0, 1, 3]], frame.states[:, [0, 1, 3]])
+
+
 def test_a_variant_gives_the_same_alone_and_beside_others() -> None:
     rows = variants(LATE)
     for k, (states, mean) in driven(rows).items():
