@@ -18,7 +18,7 @@ from pneumo_ros.plant.lanes import acting_in
 from pneumo_ros.plant.reach import fades
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
-from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, driven_lanes, longest_step, parts_of, shifted
+from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, corrected_lanes, longest_step, parts_of, shifted
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -111,24 +111,21 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     """
     parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
     corrects, lags = sensing(model, parameters), sensing(model, parameters, with_states=True)
-    rest = model.state()
-    for rows in _some(np.flatnonzero(~lags)):
-        own = _moving(model, parameters[rows])
+    rest, plain = model.state(), unsensed(model, parameters)
+    for rows in [*_some(np.flatnonzero(~lags)), *_some(np.flatnonzero(lags))]:
+        late = bool(lags[rows[0]])
+        own = _moving(model, plain[rows])
         columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
-        given, first = _at_once(model, frame, parameters[rows], corrects[rows])
-        states, mean = _drive_lanes(model, frame.run, given, parameters[rows], parts, own, true_sensors=True)
+        if late:
+            given, first = _corrected(model, frame, parameters[rows], parts)
+        else:
+            given, first = _at_once(model, frame, parameters[rows], corrects[rows])
+        true = not late or plain is not parameters
+        states, mean = _drive_lanes(model, frame.run, given, plain[rows], parts, own, true_sensors=true)
         for j in np.argsort(first, kind="stable"):
-            k, seen = rows[j], frame.states if given.ndim == 2 else given[j]
-            yield Followed(
-                int(k), seen, states[j], columns, rest, mean[j], int(rows[first[j]]) if corrects[k] else None
-            )
-    for rows in _some(np.flatnonzero(lags)):
-        own = _moving(model, parameters[rows])
-        columns = np.array([model.states.index(name) for name in own], dtype=np.int64)
-        made, first = _corrected(model, frame, parameters[rows], parts, own)
-        for j in np.argsort(first, kind="stable"):
-            yield Followed(int(rows[j]), made[j][0], made[j][1], columns, rest, made[j][2], int(rows[first[j]]))
-        del made  # before the next ones are made
+            seen = given if given.ndim == 2 else given[j]
+            along = int(rows[first[j]]) if first[j] >= 0 else None
+            yield Followed(int(rows[j]), seen, states[j], columns, rest, mean[j], along)
 
 
 def _at_once(model: Model, frame: Frame, parameters: Array, corrects: NDArray[np.bool_]) -> tuple[Array, Index]:
@@ -162,27 +159,15 @@ def _some(own: Index) -> Iterator[Index]:
     return (own[k : k + LANES_AT_ONCE] for k in range(0, len(own), LANES_AT_ONCE))
 
 
-def _corrected(
-    model: Model, frame: Frame, parameters: Array, parts: int, names: Sequence[str]
-) -> tuple[list[tuple[Array, Array, Array]], Index]:
-    """Lanes driven along the measured states, corrected for sensor effects once for each group of equal sensors.
-
-    Frame states, the states of `names` and claimed derivatives of each, and the first lane (lanes,) of its group.
-    """
+def _corrected(model: Model, frame: Frame, parameters: Array, parts: int) -> tuple[Array, Index]:
+    """As `_at_once`, where sensors have states of their own: these are driven, once for each group of equal sensors."""
     first, group = alike_sensors(model, parameters)
-    own = parameters[first]
-    given, own_states, own_mean = driven_lanes(
+    own, names = parameters[first], _moving(model, parameters[first])
+    given = corrected_lanes(
         model, frame.states, frame.run, own,
-        lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts, names), names, _SETTLED,
+        lambda states, lanes: _drive_lanes(model, frame.run, states, own[lanes], parts, names)[0], names, _SETTLED,
     )  # fmt: skip
-    made = [(given[k], own_states[k], own_mean[k]) for k in group]  # not copied: they are large
-    others = np.setdiff1d(np.arange(len(group)), first)
-    if len(others):
-        along = given[0] if len(first) == 1 else given[group[others]]
-        each = zip(*_drive_lanes(model, frame.run, along, parameters[others], parts, names), strict=True)
-        for k, (x, d) in zip(others, each, strict=True):
-            made[k] = given[group[k]], x, d
-    return made, first[group]
+    return given[0] if len(first) == 1 else given[group], first[group]
 
 
 def _drive_lanes(
@@ -236,6 +221,33 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     return first, np.ravel(group)
 
 
+def unsensed(model: Model, parameters: Array) -> Array:
+    """Parameter vectors (variants, parameters) with true sensors: what else a machine does along corrected states.
+
+    The same ones where other effects read the sensors, as a drive that follows the measured position, or where a sensor
+    effect cannot be neutral.
+    """
+    names, effects = list(model.parameters), model.composition.effects
+    wrong = [effect for effect in effects if reads_wrong(effect)]
+    read = {
+        name for one in effects if one not in wrong for function in one.functions.values() for name in function.reads
+    }
+    neutral = [_neutral(effect) for effect in wrong]
+    if not wrong or read & {*SENSED} or not all(neutral):
+        return parameters
+    found = np.array(parameters)
+    for name, value in (item for one in neutral for item in one.items()):
+        found[:, names.index(name)] = value
+    return found
+
+
+def _neutral(effect: type[Effect]) -> dict[str, float]:
+    """By dotted name, the neutral values of the parameters by which an effect makes a sensor differ from its state."""
+    own = read_from(effect)
+    fading = [(key, p.neutral) for key, p in effect.parameters.items() if key in own]
+    return {f"{effect.name}.{key}": neutral for key, neutral in fading if neutral is not None}
+
+
 def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArray[np.bool_]:
     """Which parameter vectors (variants, parameters) make any sensor of the model differ from its state.
 
@@ -248,7 +260,6 @@ def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArr
         own = read_from(effect)
         if with_states and own <= {"y", "v", *SENSED, *SENSED.values(), *effect.parameters, *keys}:
             continue
-        fading = [(f"{effect.name}.{key}", p.neutral) for key, p in effect.parameters.items() if key in own]
-        acts = [parameters[:, names.index(name)] != neutral for name, neutral in fading if neutral is not None]
+        acts = [parameters[:, names.index(name)] != neutral for name, neutral in _neutral(effect).items()]
         found |= np.any(acts, axis=0) if acts else True
     return found

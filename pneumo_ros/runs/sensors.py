@@ -14,9 +14,8 @@ from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-# frames (lanes, n, frame) and lane numbers -> states (lanes, n, own), some of those beside the frame's, and mean
-# derivatives (lanes, n, states)
-Drive = Callable[[Array, Index], tuple[Array, Array]]
+# frames (lanes, n, frame) and lane numbers -> states (lanes, n, own), some of those beside the frame's
+Drive = Callable[[Array, Index], Array]
 
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
 _AT_REST = 10  # at most, without their own states: each step leaves a share of the error that is the gain's
@@ -43,21 +42,18 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
 
     In steps of half a millisecond where the samples are that fine: first guesses need no more.
     """
-    m = frame.shape[1]
-    rest, parts = model.state()[m:], parts_of(model) if run.sample_time < SHORT else PARTS
+    rest, parts = model.state()[frame.shape[1] :], parts_of(model) if run.sample_time < SHORT else PARTS
     held, step = run.averaged(model.inputs, parts), STEP if parts == PARTS else longest_step(model, run, parts)
 
-    def drive(given: Array, lanes: Index) -> tuple[Array, Array]:
-        states, rates = model.follow(
-            given[0], held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts
-        )
-        return states[None, :, m:], rates[None]
+    def follow(given: Array) -> tuple[Array, Array]:
+        return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts)
 
-    if model.composition.true_sensors:
-        given, (states, rates) = frame[None], drive(frame[None], np.zeros(1, dtype=np.int64))
-    else:
-        given, states, rates = driven_lanes(model, frame, run, None, drive, model.states[m:], _ENOUGH)
-    return np.concatenate([given[0], states[0]], axis=1), rates[0]
+    if not model.composition.true_sensors:
+        names = model.states[frame.shape[1] :]
+        (frame,) = corrected_lanes(
+            model, frame, run, None, lambda given, _: follow(given[0])[0][None, :, -len(names) :], names, _ENOUGH
+        )
+    return follow(frame)
 
 
 def parts_of(model: Model, enough: int = QUICK) -> int:
@@ -74,11 +70,11 @@ def longest_step(model: Model, run: Run, parts: int, true_sensors: bool = False)
     return min(1.01 * run.sample_time / parts, STEP if model.composition.jumping else most)
 
 
-def driven_lanes(
+def corrected_lanes(
     model: Model, frame: Array, run: Run, parameters: Array | None, drive: Drive, names: Sequence[str],
     enough: Sequence[float],
-) -> tuple[Array, Array, Array]:  # fmt: skip
-    """Frame states without sensor effects (lanes, n, frame), and states, those of `names`, and rates along them.
+) -> Array:  # fmt: skip
+    """Frame states without sensor effects (lanes, n, frame); `drive` follows the states of `names` along them.
 
     Readings that are late are first taken at their own times, and others inverted as if the sensors' own states were at
     rest, which is all that a gain needs. Then the readings r(x) are inverted by at most two steps of the fixed point
@@ -95,25 +91,19 @@ def driven_lanes(
     given = np.repeat(frame[None], count, axis=0)
     for lane in np.flatnonzero(before.any(axis=(1, 2))):
         given[lane] = shifted(frame, before[lane], run.sample_time)
-    states, rates = drive(given, moving)
     for _ in range(_ITERATIONS):
         own = None if parameters is None else parameters[moving]
-        shift = taken_back(model, given[moving], [states[lane] for lane in moving], names, own, run)
+        shift = taken_back(model, given[moving], drive(given[moving], moving), names, own, run)
         still = np.any(np.abs(shift - before).max(axis=1) > enough[: shift.shape[-1]], axis=1)
         lost = ~np.isfinite(shift).all(axis=(1, 2))
         if parameters is not None:
-            given[moving[lost]] = states[moving[lost]] = rates[moving[lost]] = np.nan
+            given[moving[lost]] = np.nan
         still &= ~lost
         moving, before = moving[still], shift[still]
         if not len(moving):
             break
         given[moving] = [shifted(frame, own, run.sample_time) for own in before]
-        if len(moving) < count:
-            states[moving], rates[moving] = drive(given[moving], moving)
-        else:
-            del states, rates  # before the new ones are made
-            states, rates = drive(given, moving)
-    return given, states, rates
+    return given
 
 
 def advanced(model: Model, frame: Array, parameters: Array | None, run: Run) -> Array:
@@ -140,7 +130,7 @@ def at_rest(
     By the same fixed point to within `enough`, but without driving anything. Not finite in a lane whose readings are
     not.
     """
-    found, none = np.zeros_like(late), [np.empty((len(frame), 0))]
+    found, none = np.zeros_like(late), np.empty((1, len(frame), 0))
     for lane in range(len(late)):
         own = None if parameters is None else parameters[lane : lane + 1]
         for _ in range(_AT_REST):
@@ -164,11 +154,11 @@ def delays_of(model: Model, parameters: Array) -> Array:
 
 
 def taken_back(
-    model: Model, given: Array, states: Sequence[Array], names: Sequence[str], parameters: Array | None, run: Run
+    model: Model, given: Array, states: Array, names: Sequence[str], parameters: Array | None, run: Run
 ) -> Array:
     """What to add to the readings (lanes, n, sensed) of position and pressures to get these states.
 
-    given (lanes, n, frame), states: (n, names) of each lane; all others rest. parameters (lanes, parameters) or None
+    given (lanes, n, frame), states (lanes, n, names); all others rest. parameters (lanes, parameters) or None
     for the model's own.
     """
     held = run.inputs(model.inputs)

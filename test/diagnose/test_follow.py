@@ -1,14 +1,23 @@
 """Variants driven along a recording with sensor effects: many at once give the result of each alone."""
 
+from pathlib import Path
+
 import numpy as np
 from identify.making import own
 
-from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of, sensing
-from pneumo_ros.plant import Model
+from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of, sensing, unsensed
+from pneumo_ros.plant import Model, load_model
 
 SENSORS = ("position_sensor_delay", "pressure_sensor_offset")
 MODEL, _, RUN = own("steps", seconds=3.0)
 EVERY = np.arange(len(RUN))
+SERVO = """/**:
+  ros__parameters:
+    effects: [position_loop, dc_motor]
+    piston: {mass: 0.007, area_a: 1.0e-4, area_b: 1.0e-4, stroke: 7.0}
+    position_loop: {proportional_gain: 1.0}
+    dc_motor: {force_per_volt: 0.1, back_emf: 0.4, source_voltage: 7.4}
+"""
 LATE = MODEL.with_effects([*MODEL.effects, *SENSORS])
 
 
@@ -69,6 +78,22 @@ def test_only_sensors_with_states_of_their_own_have_to_be_driven() -> None:
     rows[0, offset] = 0.0
     assert sensing(LATE, rows).tolist() == [False, True, True]
     assert sensing(LATE, rows, with_states=True).tolist() == [False, False, True]
+
+
+def test_along_corrected_states_a_machine_has_true_sensors_unless_it_reads_them(tmp_path: Path) -> None:
+    """A servo's position loop follows the late position, not the true one."""
+    rows = variants(LATE)
+    plain = unsensed(LATE, rows)
+    moved = {name for name, x, y in zip(LATE.parameters, rows[0], plain[0], strict=True) if x != y}
+    assert moved == {
+        "position_sensor_delay.delay", "pressure_sensor_offset.offset_a", "pressure_sensor_offset.offset_b",
+    }  # fmt: skip
+    assert not sensing(LATE, plain).any()
+    (tmp_path / "servo.yaml").write_text(SERVO)
+    servo = load_model(tmp_path / "servo.yaml")
+    late = servo.with_effects([*servo.effects, "position_sensor_delay"])
+    values = late.values[None]
+    assert unsensed(late, values) is values
 
 
 def test_a_wrong_gain_is_taken_back_exactly() -> None:

@@ -10,7 +10,7 @@ from rig.effects import Wish, build
 
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.run import PARTS, Run
-from pneumo_ros.runs.sensors import LONGEST, QUICK, corrected, driven, driven_lanes, longest_step
+from pneumo_ros.runs.sensors import LONGEST, QUICK, corrected, corrected_lanes, driven, longest_step
 from pneumo_ros.shooting.refit import Refit, refit
 from pneumo_ros.shooting.segments import cut
 from pneumo_ros.shooting.windows import predict
@@ -126,18 +126,17 @@ def test_a_lane_whose_sensors_run_away_has_no_states() -> None:
     base, _, run = own("steps", seconds=3.0)
     model, frame = with_effect(base, OFFSET, offset_b=12e3), run.smoothed.frame
     held, rest = run.averaged(model.inputs, 1), model.state()[4:]
-    lanes = np.tile(model.values, (2, 1))
+    lanes, names = np.tile(model.values, (2, 1)), model.states[4:]
 
-    def driven_in(step: float) -> tuple[np.ndarray, ...]:
-        def drive(given: np.ndarray, moving: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return model.follow_lanes(
-                given, held, rest, lanes[moving], sample_time=1e-3, step=step, parts=1, states=model.states[4:]
-            )
+    def corrected_in(step: float) -> np.ndarray:
+        def drive(given: np.ndarray, moving: np.ndarray) -> np.ndarray:
+            some = {"sample_time": 1e-3, "step": step, "parts": 1, "states": names}
+            return model.follow_lanes(given, held, rest, lanes[moving], **some)[0]
 
-        return driven_lanes(model, frame, run, lanes, drive, model.states[4:], (1e-9, 1e-2, 1e-2))
+        return corrected_lanes(model, frame, run, lanes, drive, names, (1e-9, 1e-2, 1e-2))
 
-    assert all(np.isnan(found).all() for found in driven_in(LONGEST))
-    given, *_ = driven_in(longest_step(model, run, 1))
+    assert np.isnan(corrected_in(LONGEST)).all()
+    given = corrected_in(longest_step(model, run, 1))
     np.testing.assert_allclose(given[:, :, 3], np.tile(frame[:, 3] - 12e3, (2, 1)), atol=1.0)
 
 
@@ -226,8 +225,5 @@ def test_a_lane_that_leaves_the_finite_numbers_ends_no_diagnosis() -> None:
     wild = np.zeros((1, len(run), len(names)))
     wild[0, -1, names.index("behind")] = np.inf
     parameters, enough = late.values[None], (1e-9, 1e-2, 1e-2)
-    given, states, _ = driven_lanes(
-        late, truth[:, :4], run, parameters, lambda frame, lanes: (wild, wild), names, enough
-    )
+    given = corrected_lanes(late, truth[:, :4], run, parameters, lambda frame, lanes: wild, names, enough)
     assert np.isnan(given).all()
-    assert np.isnan(states).all()
