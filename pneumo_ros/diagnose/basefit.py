@@ -110,21 +110,21 @@ def slopes(evidence: Evidence, model: Model, known: Known) -> tuple[Array, Array
 
     Both in the noise of the windows; a parameter that amplifies it counts as `OwnNoise` says.
     """
-    residual = residuals(evidence, model, [{}])[0]
-    return residual, _slopes(evidence, model, known, residual)[1]
+    return _slopes(evidence, model, known)[1:]
 
 
-def _slopes(evidence: Evidence, model: Model, known: Known, residual: Array) -> tuple[OwnNoise, Array]:
-    """The slopes, and the noise in which residuals counted for them; residual (residuals,): of `model`."""
+def _slopes(evidence: Evidence, model: Model, known: Known) -> tuple[OwnNoise, Array, Array]:
+    """The same, and the noise in which the residuals of the probes counted."""
     ends = np.array([model.specification(n).high for n in known.names])
     here = np.array([model[n] for n in known.names])
     steps = small_step(known.step, here, known.centre, FINE)
     steps = np.where(here + steps > ends, -steps, steps)
     variants = [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))]
+    residual = residuals(evidence, model, [{}])[0]
     own = OwnNoise(evidence, model, residual)
     r = evidence.residuals(model, vectors(model, variants), ranking=True)  # differences need no more
     r = own.of([model.with_parameters(variant) for variant in variants], r)
-    return own, np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
+    return own, residual, np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 
 
 def fit_base(
@@ -161,13 +161,12 @@ class _Descent:
         self.evidence, self.known, self.model, self.share = evidence, known, model, share
         specified = [model.specification(n) for n in known.names]
         self.low, self.high = np.array([s.low for s in specified]), np.array([s.high for s in specified])
-        self.plain = residuals(evidence, model, [{}])[0]  # in the noise of the windows
         self.residual = self.slopes = np.empty(0)
 
     def renew(self) -> None:
-        """Compute the slopes at the current model."""
-        self.own, steep = _slopes(self.evidence, self.model, self.known, self.plain)
-        self.residual, self.slopes = self.plain / self.own.here, steep / self.own.here[:, None]
+        """Compute residual and slopes at the current model: windows of chambers have the volumes of the model asked."""
+        self.own, residual, steep = _slopes(self.evidence, self.model, self.known)
+        self.residual, self.slopes = residual / self.own.here, steep / self.own.here[:, None]
 
     def in_the_same_noise(self) -> bool:
         """Whether the model at hand amplifies noise as that of the slopes does."""
@@ -192,29 +191,23 @@ class _Descent:
         tried = self._tried(theta, x, (1.0,))
         if not tried[0][0] - before >= FAITHFUL * promised:
             tried += self._tried(theta, x, SHARES)
-        objective, variant, plain, residual = max(tried, key=lambda one: one[0])
+        objective, variant, residual = max(tried, key=lambda one: one[0])
         gain = objective - before
         if gain > 0.0:
-            self.model, self.plain, self.residual = self.model.with_parameters(variant), plain, residual
+            self.model, self.residual = self.model.with_parameters(variant), residual
         return gain, promised
 
-    def _tried(
-        self, theta: Array, x: Array, shares: Sequence[float]
-    ) -> list[tuple[float, dict[str, float], Array, Array]]:
-        """Objective, values and residual, in the noise of the windows and as it counts, of shares of a step x (free,).
-
-        The steps begin at theta (free,).
-        """
+    def _tried(self, theta: Array, x: Array, shares: Sequence[float]) -> list[tuple[float, dict[str, float], Array]]:
+        """Objective, values and residual of shares of a step x (free,) from theta."""
         names, prior = self.known.names, self.known.prior
         values = [np.clip(theta + share * x * prior, self.low, self.high) for share in shares]
         values = [physical(self.model, names, own) for own in values]
         variants = [dict(zip(names, own.tolist(), strict=True)) for own in values]
         models = [self.model.with_parameters(variant) for variant in variants]
-        plain = residuals(self.evidence, self.model, variants)
-        found = self.own.of(models, plain.copy()) / self.own.here
+        found = self.own.of(models, residuals(self.evidence, self.model, variants)) / self.own.here
         offsets = [(own - self.known.centre) / prior for own in values]
         objectives = [_objective(self.evidence, r, o) for r, o in zip(found, offsets, strict=True)]
-        return list(zip(objectives, variants, plain, found, strict=True))
+        return list(zip(objectives, variants, found, strict=True))
 
     def _wanted(self, theta: Array, offset: Array) -> tuple[Array, Array]:
         """Step in priors by reweighted least squares within the ranges, and the residual that the slopes predict."""
