@@ -69,9 +69,11 @@ def strain(offset: Array) -> float:
     return 0.5 * float(np.sum(offset**2))
 
 
-def residuals(evidence: Evidence, model: Model, variants: Sequence[Mapping[str, float]]) -> Array:
-    """Residuals (variants, residuals) of `model` with some values changed."""
-    return evidence.residuals(model, vectors(model, variants))
+def residuals(
+    evidence: Evidence, model: Model, variants: Sequence[Mapping[str, float]], ranking: bool = False
+) -> Array:
+    """Residuals (variants, residuals) of `model` with some values changed; `ranking` as in `Evidence.residuals`."""
+    return evidence.residuals(model, vectors(model, variants), ranking=ranking)
 
 
 class OwnNoise:
@@ -122,7 +124,7 @@ def _slopes(evidence: Evidence, model: Model, known: Known) -> tuple[OwnNoise, A
     variants = [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))]
     residual = residuals(evidence, model, [{}])[0]
     own = OwnNoise(evidence, model, residual)
-    r = evidence.residuals(model, vectors(model, variants), ranking=True)  # differences need no more
+    r = residuals(evidence, model, variants, ranking=True)  # differences need no more
     r = own.of([model.with_parameters(variant) for variant in variants], r)
     return own, residual, np.asarray(((r[1:] - r[0]) / (steps / known.prior)[:, None]).T)
 

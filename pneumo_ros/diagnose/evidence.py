@@ -19,12 +19,10 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
-from pneumo_ros.diagnose.follow import Followed, Frame, follow, follow_each, frame_of, noisier
+from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.lanes import acting_in
-from pneumo_ros.plant.reach import fades
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
 from pneumo_ros.runs.sensors import delays_of
@@ -160,17 +158,6 @@ def _pool(process: int, threads: int) -> ThreadPoolExecutor:
     Not those of `plant.lanes`: these wait for them, and a pool whose threads wait for it stands still.
     """
     return ThreadPoolExecutor(threads)
-
-
-def adding_mass(model: Model, parameters: Array) -> NDArray[np.bool_]:
-    """Parameter vectors (variants, parameters) by which an effect of the model may add to the moving mass."""
-    effects, found = model.composition.effects, np.zeros(len(parameters), dtype=bool)
-    acts = iter(acting_in(effects, parameters).T)
-    for effect in effects:
-        own = next(acts) if fades(effect) else True
-        if any("added_mass" in function.writes for function in effect.functions.values()):
-            found |= own
-    return found
 
 
 def without_states(model: Model) -> Model:

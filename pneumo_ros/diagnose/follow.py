@@ -1,6 +1,6 @@
 """The states a model claims along the measured motion, corrected for the model's sensor effects."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.lanes import acting_in
-from pneumo_ros.plant.reach import fades
+from pneumo_ros.plant.reach import fades, read_by, written_by
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, corrected_lanes, longest_step, parts_of, shifted
@@ -138,9 +138,8 @@ def _at_once(model: Model, frame: Frame, parameters: Array, corrects: NDArray[np
         return frame.states, found
     given, own = np.repeat(frame.states[None], len(parameters), axis=0), np.flatnonzero(corrects)
     first, group = alike_sensors(model, parameters[own])
-    for k, lane in enumerate(own[first]):
-        none = np.zeros((1, len(frame.states), len(model.composition.sensed)))
-        shift = at_rest(model, frame.states, none, parameters[lane : lane + 1], frame.run, _SETTLED)[0]
+    none = np.zeros((len(first), len(frame.states), len(model.composition.sensed)))
+    for k, shift in enumerate(at_rest(model, frame.states, none, parameters[own[first]], frame.run, _SETTLED)):
         reads = np.isfinite(shift).all()
         given[own[group == k]] = shifted(frame.states, shift, frame.run.sample_time) if reads else np.nan
     found[own] = own[first][group]
@@ -193,7 +192,7 @@ def _drive(model: Model, run: Run, given: Array, held: Array, parts: int) -> tup
 
 def reads_wrong(effect: type[Effect]) -> bool:
     """Whether an effect makes a sensor differ from its state."""
-    return any(signal in SENSED for function in effect.functions.values() for signal in function.writes)
+    return not written_by(effect).isdisjoint(SENSED)
 
 
 def read_from(effect: type[Effect]) -> frozenset[str]:
@@ -206,19 +205,27 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
 
     Sensors that read more than parameters, the frame's states and their own states may differ in every lane.
     """
-    frame = {"y", "v", *SENSED, *SENSED.values()}
     columns: list[int] = []
     keys = [name.partition(".")[2] for name in model.parameters]
     for effect in filter(reads_wrong, model.composition.effects):
-        reads = read_from(effect)
-        others = reads - frame - set(effect.states) - set(effect.parameters)
-        if not others <= {*keys} - {*SIGNALS, *model.states}:
+        reads, others = read_from(effect), _others(effect)
+        if not others <= _parameters(model):
             return np.arange(len(parameters)), np.arange(len(parameters))
         own = [f"{effect.name}.{key}" for key in effect.parameters if key in reads]
         columns += [k for k, name in enumerate(model.parameters) if name in own]
         columns += [k for k, key in enumerate(keys) if key in others]
     _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
     return first, np.ravel(group)
+
+
+def _others(effect: type[Effect]) -> frozenset[str]:
+    """What its readings depend on beside the frame's states, its own states and its own parameters."""
+    return read_from(effect) - {"y", "v", *SENSED, *SENSED.values(), *effect.states, *effect.parameters}
+
+
+def _parameters(model: Model) -> set[str]:
+    """Names by which effects read parameters, also those of others, without what is a signal or a state as well."""
+    return {name.partition(".")[2] for name in model.parameters} - {*SIGNALS, *model.states}
 
 
 def unsensed(model: Model, parameters: Array) -> Array:
@@ -228,12 +235,9 @@ def unsensed(model: Model, parameters: Array) -> Array:
     effect cannot be neutral.
     """
     names, effects = list(model.parameters), model.composition.effects
-    wrong = [effect for effect in effects if reads_wrong(effect)]
-    read = {
-        name for one in effects if one not in wrong for function in one.functions.values() for name in function.reads
-    }
-    neutral = [_neutral(effect) for effect in wrong]
-    if not wrong or read & {*SENSED} or not all(neutral):
+    watching = any(not reads_wrong(effect) and read_by(effect) & SENSED.keys() for effect in effects)
+    neutral = [_neutral(effect, read_from(effect)) for effect in filter(reads_wrong, effects)]
+    if watching or not neutral or not all(neutral):
         return parameters
     found = np.array(parameters)
     for name, value in (item for one in neutral for item in one.items()):
@@ -241,11 +245,25 @@ def unsensed(model: Model, parameters: Array) -> Array:
     return found
 
 
-def _neutral(effect: type[Effect]) -> dict[str, float]:
-    """By dotted name, the neutral values of the parameters by which an effect makes a sensor differ from its state."""
-    own = read_from(effect)
-    fading = [(key, p.neutral) for key, p in effect.parameters.items() if key in own]
-    return {f"{effect.name}.{key}": neutral for key, neutral in fading if neutral is not None}
+def _neutral(effect: type[Effect], keys: Collection[str]) -> dict[str, float]:
+    """By dotted name, the neutral values of those of an effect's parameters that are among `keys` and have one."""
+    own = [(key, p.neutral) for key, p in effect.parameters.items() if key in keys]
+    return {f"{effect.name}.{key}": neutral for key, neutral in own if neutral is not None}
+
+
+def _differs(model: Model, parameters: Array, values: Mapping[str, float]) -> NDArray[np.bool_]:
+    """Which parameter vectors (variants, parameters) have another value of any of `values`; all, if these are none."""
+    names = list(model.parameters)
+    found = [parameters[:, names.index(name)] != value for name, value in values.items()]
+    return np.any(found, axis=0) if found else np.ones(len(parameters), dtype=bool)
+
+
+def adding_mass(model: Model, parameters: Array) -> NDArray[np.bool_]:
+    """Parameter vectors (variants, parameters) by which an effect of the model may add to the moving mass."""
+    found = np.zeros(len(parameters), dtype=bool)
+    for effect in (one for one in model.composition.effects if "added_mass" in written_by(one)):
+        found |= _differs(model, parameters, _neutral(effect, effect.parameters) if fades(effect) else {})
+    return found
 
 
 def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArray[np.bool_]:
@@ -254,12 +272,8 @@ def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArr
     `with_states`: of sensors whose readings depend on more than parameters and the frame's states, as a late one.
     """
     found = np.zeros(len(parameters), dtype=bool)
-    names = list(model.parameters)
-    keys = {name.partition(".")[2] for name in names} - {*SIGNALS, *model.states}
     for effect in filter(reads_wrong, model.composition.effects):
         own = read_from(effect)
-        if with_states and own <= {"y", "v", *SENSED, *SENSED.values(), *effect.parameters, *keys}:
-            continue
-        acts = [parameters[:, names.index(name)] != neutral for name, neutral in _neutral(effect).items()]
-        found |= np.any(acts, axis=0) if acts else True
+        if not with_states or own & effect.states.keys() or not _others(effect) <= _parameters(model):
+            found |= _differs(model, parameters, _neutral(effect, own))
     return found

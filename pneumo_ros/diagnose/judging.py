@@ -53,9 +53,8 @@ def judged(
         return found
     scoring.measure(base.everything, nothing.residual, held.residual)
     own = nothing.residual, held.residual, nothing.shift
-    alone = scoring.best(
-        base.everything, fits, [own, moved(own, fits, -nothing.shift)], threads=2
-    )  # one step, or as fitted
+    ways = [own, moved(own, fits, -nothing.shift)]  # one step, or as fitted
+    alone = scoring.best(base.everything, fits, ways, threads=2)
     models = [base.everything.with_parameters(h.values) for h in hypotheses]
     for part in scoring.parts:
         part.amplify(models)

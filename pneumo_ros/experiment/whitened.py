@@ -17,6 +17,7 @@ from pneumo_ros.equations.breakaway import UNSEEN, force_spread
 from pneumo_ros.experiment.record import INTERVAL, Mask, Record
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.compose import SENSED
+from pneumo_ros.plant.reach import written_by
 
 Array = NDArray[np.float64]
 
@@ -153,8 +154,7 @@ class Whitened:
 
 def _alters_signals(model: Model) -> bool:
     """Whether sensors of the model show something else than the states."""
-    written = {name for effect in model.composition.effects for f in effect.functions.values() for name in f.writes}
-    return not written.isdisjoint(SENSED)
+    return any(not written_by(effect).isdisjoint(SENSED) for effect in model.composition.effects)
 
 
 def _pieces(wanted: Mask, length: int) -> NDArray[np.int64]:

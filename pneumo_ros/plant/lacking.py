@@ -7,7 +7,7 @@ from pneumo_ros.files import yaml_number
 from pneumo_ros.plant.compose import Composition, actuator_of, observed_of
 from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.library import FRAME, USUAL_ACTUATOR, USUAL_FRAME, Library, is_part
-from pneumo_ros.plant.reach import acting, names_in
+from pneumo_ros.plant.reach import acting, names_in, written_by
 from pneumo_ros.plant.signals import SIGNALS
 
 
@@ -17,7 +17,7 @@ def lacking(effects: Sequence[type[Effect]], library: Library) -> str | None:
     It names what is missing and what to add. None unless exactly one effect of `library` has it.
     """
     here = {effect.name for effect in effects}
-    known = {name for effect in effects for name in (*effect.states, *effect.parameters, *_written(effect))}
+    known = {name for effect in effects for name in (*effect.states, *effect.parameters, *written_by(effect))}
     actuator = actuator_of(effects)
     known |= set(actuator.open_side) if actuator else set()
     for effect in effects:
@@ -38,7 +38,7 @@ def without_chambers(effects: tuple[type[Effect], ...], library: Library) -> str
     own = [state for effect in effects if is_part(effect) for state in effect.states]
     acts, observed = acting(effects, (*own, *observed_of(()))), observed_of(chambers.chambers)
     for effect in effects:
-        if any(SIGNALS[name].kind in ("input", "measured") for name in _written(effect) & SIGNALS.keys()):
+        if any(SIGNALS[name].kind in ("input", "measured") for name in written_by(effect) & SIGNALS.keys()):
             return None  # which `compose` refuses
         if effect.name not in acts and effect.name in acting((*effects, chambers), (*own, *chambers.states, *observed)):
             names = [name for function in effect.functions.values() for name in function.reads]
@@ -80,10 +80,6 @@ def _read(effect: type[Effect], known: set[str]) -> Iterator[str]:
                 yield from (one for one in names if one not in known and one not in SIGNALS)
             elif name not in known:
                 yield name
-
-
-def _written(effect: type[Effect]) -> set[str]:
-    return {name for function in effect.functions.values() for name in function.writes}
 
 
 def _all(library: Library) -> Iterator[type[Effect]]:

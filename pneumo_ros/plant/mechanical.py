@@ -2,6 +2,7 @@
 
 from pneumo_ros.errors import PneumoError
 from pneumo_ros.plant.model import Model
+from pneumo_ros.plant.reach import written_by
 
 _MECHANICS = frozenset(
     {
@@ -42,18 +43,14 @@ def mechanical(model: Model, by_force: bool = False) -> Model | None:
 
 def moves(model: Model, name: str) -> bool:
     """Whether an effect acts on the piston or on its position sensor."""
-    return any(signal in _MECHANICS | {"y_measured"} for signal in _written(model, name))
-
-
-def _written(model: Model, name: str) -> set[str]:
-    return {signal for function in model.library.find(name).functions.values() for signal in function.writes}
+    return not written_by(model.library.find(name)).isdisjoint(_MECHANICS | {"y_measured"})
 
 
 def pneumatic(model: Model) -> Model:
     """The model without its mechanics: valve and chambers, driven by the measured motion."""
     if model.force_driven or model.imposed:
         return model
-    kept = [name for name in model.effects if not _written(model, name) & _MECHANICS]
+    kept = [name for name in model.effects if not written_by(model.library.find(name)) & _MECHANICS]
     return model.with_effects([*kept, IMPOSED])
 
 

@@ -25,6 +25,16 @@ def _is_measured(name: str) -> bool:
     return name in SIGNALS and SIGNALS[name].kind == "measured"
 
 
+def read_by(effect: type[Effect]) -> set[str]:
+    """Names that any function of an effect reads."""
+    return {name for function in effect.functions.values() for name in function.reads}
+
+
+def written_by(effect: type[Effect]) -> set[str]:
+    """Names that any function of an effect writes."""
+    return {name for function in effect.functions.values() for name in function.writes}
+
+
 def reads_drive(effect: type[Effect]) -> bool:
     """Whether an effect reads the drive force."""
     return any(name in ("drive", DRIVE) for reads, _ in _functions(effect) for name in reads)
@@ -38,8 +48,7 @@ def fades(effect: type[Effect]) -> bool:
 
 def owners_read(effect: type[Effect]) -> tuple[str, ...]:
     """Names of the other effects whose parameters an effect reads, as owner__key, sorted."""
-    reads = {name for function in effect.functions.values() for name in function.reads}
-    return tuple(sorted({name.partition("__")[0] for name in reads if "__" in name}))
+    return tuple(sorted({name.partition("__")[0] for name in read_by(effect) if "__" in name}))
 
 
 def inputs_of(effects: Sequence[type[Effect]], measured: Collection[str] = ()) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.compose import SENSED
 from pneumo_ros.plant.model import STEP
+from pneumo_ros.plant.reach import written_by
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.run import PARTS, Run
 from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
@@ -148,7 +149,7 @@ def delays_of(model: Model, parameters: Array) -> Array:
     found = np.zeros((len(parameters), len(sensed)))
     for effect in model.composition.effects:
         late = [names.index(f"{effect.name}.{key}") for key, one in effect.parameters.items() if one.role == "delay"]
-        written = {SENSED.get(signal) for function in effect.functions.values() for signal in function.writes}
+        written = {SENSED.get(signal) for signal in written_by(effect)}
         found += parameters[:, late].sum(axis=1)[:, None] * np.array([state in written for state in sensed])
     return found
 

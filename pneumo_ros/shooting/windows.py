@@ -10,7 +10,7 @@ from pneumo_ros.equations.equations import centred
 from pneumo_ros.equations.guess import measured_columns, measured_frame
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.reach import read_by
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.run import METERED, PARTS, Run
 from pneumo_ros.runs.sensors import driven
@@ -114,16 +114,11 @@ def _flow(model: Model, run: Run, states: Array, rows: NDArray[np.int64]) -> Arr
 
     So models with and without an effect that reads the flow meter are judged by the same signals.
     """
-    readers = {one.name for one in model.composition.effects if METERED in _reads(one)}
+    readers = {one.name for one in model.composition.effects if METERED in read_by(one)}
     law = model.with_effects(name for name in model.effects if name not in readers) if readers else model
     inputs = run.sampled(law.inputs)[rows].reshape(-1, len(law.inputs))
     flow = law.outputs(states.reshape(-1, states.shape[2]), inputs)["port_flow_a"]
     return flow.reshape(states.shape[:2])
-
-
-def _reads(effect: type[Effect]) -> set[str]:
-    """The names of what an effect reads."""
-    return {name for function in effect.functions.values() for name in function.reads}
 
 
 def _force_along(model: Model, run: Run, starts: NDArray[np.int64], samples: int) -> Prediction:

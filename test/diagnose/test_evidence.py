@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from identify.making import own, rig
 
-from pneumo_ros.diagnose.evidence import Evidence, adding_mass
+from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.follow import adding_mass
 from pneumo_ros.diagnose.hypothesis import everything, family_scales, missing, vectors
 from pneumo_ros.equations.weak import equation_residuals
 
