@@ -69,11 +69,11 @@ def judged(
     alone = scoring.best(base.everything, fits, ways, threads=2)
     unaided = surprise(base, alone.fit[2])
     bare = scoring.in_noise_of([one.best for one in reached], base.everything, alone)
-    for h, r, beside, alone in zip(hypotheses, residuals, reached, bare, strict=True):
+    for h, r, m, beside, alone in zip(hypotheses, residuals, models, reached, bare, strict=True):
         gained = beside.best.evidence - alone.evidence
         lines = ~points_of(base, h.name)  # a texture that its points explain is nothing that was known
         plain = _plain(scoring, fits, h, alone)
-        before, heldout = plain.fit[1], float(beside.best.evidence[1] - plain.evidence[1])
+        before, heldout = plain.fit[1], scoring.heldout(m, beside.best, base.everything, plain)
         strained = surprise(base, alone.fit[2] * lines)
         known = strained - surprise(base, beside.best.fit[2] * lines) - 0.5 * float(h.u @ h.u)
         prior, after = unaided + beside.prior, beside.best.fit[1]

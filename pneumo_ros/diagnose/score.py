@@ -120,11 +120,32 @@ class Scoring:
             found.append(replace(best, evidence=best.evidence + more))
         return found
 
+    def heldout(self, model: Model, best: Best, without: Model, plain: Best) -> float:
+        """Nats that the held-out runs gain by themselves from the best fit of one model, `without`, to that of another.
+
+        What no model has may be another thing in them, as where an effect that is still missing acts more: each model
+        has the discrepancy that is best for them alone. The noise of the first may be that of the other, as above.
+        """
+
+        def families(model: Model, best: Best, usual: Mapping[str, Noise] | None = None) -> list[_Family]:
+            return self._families(model, best.fit[1:2], usual, self.parts[1:])
+
+        after, before = families(model, best), families(without, plain)
+        there = families(without, plain, {family.name: family.best for family in after})
+        return sum(
+            float(one.evidence()[0] - max(own.evidence()[0], other.evidence()[0]))
+            for one, own, other in zip(after, before, there, strict=True)
+        )
+
     def _families(
-        self, model: Model, residuals: Sequence[Array], usual: Mapping[str, Noise] | None = None
+        self,
+        model: Model,
+        residuals: Sequence[Array],
+        usual: Mapping[str, Noise] | None = None,
+        parts: Sequence[Evidence] = (),
     ) -> list["_Family"]:
-        """The families of the training runs' residuals, or of those and the held-out runs'."""
-        usual, parts = usual or self.usual, self.parts[: len(residuals)]
+        """The families of the residuals of `parts`: of the training runs, or of those and of the held-out runs."""
+        usual, parts = usual or self.usual, parts or self.parts[: len(residuals)]
         levels = [part.noise_of(model) for part in parts]
         return [_Family(name, parts, residuals, levels, usual.get(name)) for name in self.names]
 

@@ -125,6 +125,20 @@ def test_the_same_noise_is_no_gain() -> None:
     assert again.evidence == pytest.approx(own.evidence, abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_held_out_recordings_have_a_discrepancy_of_their_own(seed: int) -> None:
+    """A part of what they lack is explained; the rest is another effect, of which training has nothing."""
+    scoring, few, effect, second = Scoring(evidence(), evidence(N // 4)), N // 4, slow(seed, 4.0), slow(seed + 10, 8.0)
+    left = noise(seed + 20, few) + second[:few]
+    before = scoring.at(MODEL, noise(seed) + 2.0 * effect, left + effect[:few])
+    after = scoring.at(MODEL, noise(seed), left)
+    together = float(after.evidence[1] - before.evidence[1])
+    alone = scoring.heldout(MODEL, after, MODEL, before)
+    assert together < 0.0 < alone
+    assert scoring.heldout(MODEL, before, MODEL, after) < 0.0
+    assert scoring.heldout(MODEL, after, MODEL, after) == pytest.approx(0.0, abs=0.1)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_constant_beside_noise_is_seen(seed: int) -> None:
     """Two sets of 2000 independent windows: 0.2 noise deviations are worth 4000 x 0.02 nats."""
