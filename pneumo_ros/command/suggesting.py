@@ -41,13 +41,15 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     asked = f"and {MARGIN:g} are asked"
     would = "of its usual size it would gain {:.1f} nats in these recordings"
     gain = "these recordings gain {:.1f} nats with it"
-    told = {name: would.format(max(nats, 0.0)) for name, nats in last.unseen.items()}
-    told |= {name: gain.format(nats) for name, nats in last.undecided.items()}
+    told = {name: f"{would.format(max(nats, 0.0))}, {asked}" for name, nats in last.unseen.items()}
+    for name, one in last.undecided.items():
+        why = asked if one.score.nats < MARGIN else f"but: {'; '.join(one.objections)}"
+        told[name] = f"{gain.format(one.score.nats)}, {why}"
     added = {one.effect for one in outcome.added}
     for name, why in ((name, why) for name, why in told.items() if name not in added):
         room = library.find(name).__module__.split(".")[-2]
         experiment = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
-        found.append({"effect": name, "because": f"{why}, {asked}", "experiment": f"pneumo experiment {experiment}"})
+        found.append({"effect": name, "because": why, "experiment": f"pneumo experiment {experiment}"})
     return found
 
 

@@ -54,12 +54,12 @@ class Candidate:
 
     @property
     def undecided(self) -> bool:
-        """Whether the recordings speak for it, but not enough, and nothing else is objected.
+        """Whether the recordings speak for it, but not enough, or it removes too little, and nothing else is objected.
 
-        Nor that it removes little: what is left may be something else, which neither shows nor excludes it. Held-out
-        recordings are against it if they lose more than all recordings together gain.
+        What is left may be something else, which neither shows nor excludes it. Held-out recordings are against it if
+        they lose more than all recordings together gain.
         """
-        some = max(0.0, -self.score.held) < self.score.nats < MARGIN
+        some = max(0.0, -self.score.held) < self.score.nats and bool(self.objections)
         return some and not replace(self, score=Score(MARGIN, MARGIN), share=1.0).objections
 
     @property

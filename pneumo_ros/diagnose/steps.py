@@ -23,9 +23,9 @@ class Step:
     unseen: dict[str, float] = field(default_factory=dict)  # effects these recordings cannot show: nats at usual size
 
     @property
-    def undecided(self) -> dict[str, float]:
-        """Effects that these recordings speak for, but not enough, by the nats that they gain."""
-        return {c.name: c.score.nats for c in reversed(self.candidates) if c.undecided}
+    def undecided(self) -> dict[str, Candidate]:
+        """Effects that these recordings speak for, but not enough, by name."""
+        return {c.name: c for c in reversed(self.candidates) if c.undecided}
 
 
 def without(step: Step, gone: Sequence[str], why: str) -> Step:

@@ -127,6 +127,9 @@ def test_a_candidate_is_refused_for_one_reason_each(changed: dict[str, Any], why
         ({"score": Score(5.0, -2.0)}, True),
         ({"score": Score(5.0, -2.6)}, False),  # held-out recordings lose more than all together gain
         ({"score": Score(5.0, 2.0), "share": 0.2}, True),  # what is left may be something else
+        ({"score": Score(160.0, 60.0), "share": 0.2}, True),  # as that of a rough machine
+        ({"score": Score(160.0, -60.0)}, True),
+        ({"score": Score(160.0, 60.0), "lag": 0.5, "share": 0.2}, False),
         ({"score": Score(5.0, 2.0), "refused": "it is known"}, False),
     ],
 )
@@ -134,7 +137,7 @@ def test_what_gains_too_little_and_has_no_other_fault_is_undecided(changed: dict
     one = candidate(**changed)
     assert one.undecided is undecided
     step = Step(MODEL, (one,), None, (), {}, {})
-    assert step.undecided == ({"constant_load": one.score.nats} if undecided else {})
+    assert step.undecided == ({"constant_load": one} if undecided else {})
 
 
 def test_the_best_score_comes_first() -> None:
