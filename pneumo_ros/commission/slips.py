@@ -29,21 +29,18 @@ def surely_static(evidence: Evidence, model: Model) -> Evidence:
     `model`: the machine as known, for the force on its piston, its mass and its friction. The errors have one sign:
     n breakaways together are no surer than the usual one of them, so each has sqrt(n) times its own.
     """
-    shared, lowered = zip(*(_shared(part, model) for part in evidence.by_run), strict=True)
+    shared = [_shared(part, model) for part in evidence.by_run]
     count = max(sum(int(np.isfinite(one).sum()) for one in shared), 1)
     own = [part.families[-1].noise for part in evidence.by_run]
     noise = [np.sqrt(n**2 + count * s**2) for n, s in zip(own, shared, strict=True)]
-    return evidence.with_breakaways(noise, lowered)
+    return evidence.with_breakaways(noise)
 
 
-def _shared(part: RunEvidence, model: Model) -> tuple[Array, Array]:
-    """Error (breakaways,) [N] of one sign of the force at each breakaway of a run; infinite where the piston rang.
-
-    And how far [N] it lies below static friction.
-    """
-    error, lowered = np.full(len(part.breakaways), np.inf), np.zeros(len(part.breakaways))
+def _shared(part: RunEvidence, model: Model) -> Array:
+    """Error (breakaways,) [N] of one sign of the force at each breakaway of a run; infinite where the piston rang."""
+    error = np.full(len(part.breakaways), np.inf)
     if not part.breakaways:
-        return error, lowered
+        return error
     run, force = part.run, holding_force(model, part.run)
     above = model["lugre_friction.static_friction"] - model["lugre_friction.coulomb_friction"]
     just = max(round(_JUST / run.sample_time), 1)
@@ -56,9 +53,8 @@ def _shared(part: RunEvidence, model: Model) -> tuple[Array, Array]:
         ramp = max(float(ramp), rise / max((one.index - begun) * run.sample_time, 1e-3))
         share = ringing(model, one, ramp)
         if share < RINGS:
-            lowered[k] = letting_go(model, ramp)
-            error[k] = np.linalg.norm([HALF * rise, HALF * lowered[k], share * above])
-    return error, lowered
+            error[k] = np.linalg.norm([HALF * rise, HALF * letting_go(model, ramp), share * above])
+    return error
 
 
 def letting_go(model: Model, ramp: float) -> float:

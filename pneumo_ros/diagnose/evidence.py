@@ -1,7 +1,7 @@
 """The residuals of all equations along all runs, as one vector, which candidates have to explain.
 
 Families: the momentum while the piston slides [N], in windows of 100 and 40 ms; the chambers [kg/s], in windows of
-200 and 40 ms; and the breakaways [N], the force at slip minus the model's static friction at that moment.
+200 and 40 ms; and the breakaways [N], the force just before a slip minus that at which the model slips.
 The equations are those of `equations.equations`; each residual has its noise from the sensors alone.
 """
 
@@ -22,6 +22,7 @@ from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
+from pneumo_ros.equations.slip import SLOWEST, SPEEDS, force_at_slip
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
@@ -32,7 +33,7 @@ Index = NDArray[np.int64]
 Measured = MeasuredMotion | MeasuredChamber | None  # None: of breakaways
 
 BLOCK = 0.4  # s: errors within a block are correlated
-_CREEP = 1e-6  # m/s: hardly any velocity, but with a sign
+BRISTLES = "bristle_stiffness", "bristle_damping", "breakaway_ratio"
 
 
 class Evidence:
@@ -68,13 +69,10 @@ class Evidence:
     def __len__(self) -> int:
         return len(self.noise)
 
-    def with_breakaways(self, noise: Sequence[Array], lowered: Sequence[Array]) -> "Evidence":
-        """The same with another noise of the breakaways (breakaways,) [N] of each run; infinite: it does not count.
-
-        lowered: how far [N] each of them is held to lie below static friction.
-        """
+    def with_breakaways(self, noise: Sequence[Array]) -> "Evidence":
+        """The same with another noise of the breakaways (breakaways,) [N] of each run; infinite: it does not count."""
         other = copy(self)
-        other._index([part.with_breakaways(*own) for part, *own in zip(self.by_run, noise, lowered, strict=True)])
+        other._index([part.with_breakaways(own) for part, own in zip(self.by_run, noise, strict=True)])
         return other
 
     def noise_of(self, model: Model) -> Array:
@@ -191,17 +189,20 @@ class RunEvidence:
             slice(max(b.index - width, 0) - span[0], end - span[0] + 1)
             for b, end, span in zip(self.breakaways, ends, self.spans, strict=True)
         ]
-        back = max(round(0.02 / run.sample_time), 1)
-        rested = [max(min(end, b.index - back), 0) for b, end in zip(self.breakaways, ends, strict=True)]
+        least = max(round(0.02 / run.sample_time), 1)
+        rested = [max(min(end, b.index - least), 0) for b, end in zip(self.breakaways, ends, strict=True)]
         self.rested = np.array(rested, dtype=np.int64)
-        self.direction = np.array([b.direction for b in self.breakaways], dtype=float)
-        self.lowered = np.zeros(len(self.breakaways))
+        self.direction, self.ramp, self.slip = (
+            np.array([getattr(b, key) for b in self.breakaways], dtype=float) for key in ("direction", "ramp", "slip")
+        )
+        # a slip is certain between two samples
+        back = [b.index - 0.5 - end for b, end in zip(self.breakaways, ends, strict=True)]
+        self.before = np.array(back) * run.sample_time
         self._kept = dict[bool, tuple[list[float], list[Measured]]]()  # of a model, along the frame and the noisier one
 
-    def with_breakaways(self, noise: Array, lowered: Array) -> "RunEvidence":
-        """The same with another noise of the breakaways (breakaways,) [N], and how far they lie below the level."""
+    def with_breakaways(self, noise: Array) -> "RunEvidence":
+        """The same with another noise of the breakaways (breakaways,) [N]."""
         other = copy(self)
-        other.lowered = lowered
         other.families = [*self.families[:-1], replace(self.families[-1], noise=noise, usable=np.isfinite(noise))]
         return other
 
@@ -277,10 +278,7 @@ class RunEvidence:
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
     def _slips(self, model: Model, q: Array, variant: Followed, late: int) -> Array:
-        """Largest force that friction held before each slip, minus the static friction claimed at that moment.
-
-        More by `lowered`, what the slip lies below it for other reasons. The recording shows it `late` samples late.
-        """
+        """Largest force that friction held before each slip, minus that of the model; shown `late` samples late."""
         if not self.breakaways:
             return np.empty(0)
         rows = np.concatenate(self.spans)
@@ -290,9 +288,21 @@ class RunEvidence:
             max(float((d * np.convolve(part, self.kernel, "same")[_earlier(inner, late)]).max()), 0.0)
             for part, inner, d in zip(load, self.inner, self.direction, strict=True)
         ]
-        there = variant.states(self.rested)
-        there[:, 1] = self.direction * _CREEP
-        return np.asarray(np.array(largest) + self.lowered - self._see(model, q, there, self.rested)["static_level"])
+        return np.array(largest) - self._holds(model, q, variant)
+
+    def _holds(self, model: Model, q: Array, variant: Followed) -> Array:
+        """Force that the model with parameters `q` holds before each slip, up to where that of the recording is read.
+
+        That is the force at which its slip is certain, less the rise of the force from where the recording is read.
+        """
+        there = np.repeat(variant.states(self.rested), len(SPEEDS), axis=0)
+        there[:, 1] = np.outer(self.direction, SPEEDS).ravel()
+        seen = self._see(model, q, there, np.repeat(self.rested, len(SPEEDS)))
+        level, added = (seen[name].reshape(-1, len(SPEEDS)) for name in ("friction_level", "added_mass"))
+        names = model.composition.parameters
+        stiffness, damping, ratio = (float(q[names.index(f"lugre_friction.{key}")]) for key in BRISTLES)
+        force = force_at_slip(self.ramp, self.slip, self.piston + added[:, 0], stiffness, damping, ratio, level)
+        return np.asarray(force - np.maximum(self.ramp, SLOWEST) * self.before)
 
 
 def _earlier(inner: slice, late: int) -> slice:

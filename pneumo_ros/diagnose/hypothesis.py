@@ -175,7 +175,7 @@ def _shown(model: Model) -> tuple[str, ...]:
     An effect on which none of these depends changes nothing here, such as a drop of a supply that fills no chamber.
     """
     readings = (name for name in model.composition.observed if name.endswith("_measured"))
-    return (*model.states[: model.frame], *readings, "static_level")
+    return (*model.states[: model.frame], *readings, "friction_level")
 
 
 def everything(model: Model, found: dict[str, tuple[Coordinate, ...]]) -> Model:

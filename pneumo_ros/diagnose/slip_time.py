@@ -6,11 +6,12 @@ import numpy as np
 
 from pneumo_ros.equations.breakaway import REST, Breakaway
 from pneumo_ros.equations.equations import moving_mass
+from pneumo_ros.equations.slip import SLOWEST
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.plant import Model
 
 UNSURE = 0.1  # relative uncertainty of that time, from mass and friction known to a few per cent
-_STEP, _SLOWEST = 1e-4, 1.0  # s of the integration; N/s: slower rises make no difference
+_STEP = 1e-4  # s of the integration
 
 
 def slip_times(model: Model, breakaways: Sequence[Breakaway]) -> tuple[float, ...]:
@@ -27,7 +28,7 @@ def slip_times(model: Model, breakaways: Sequence[Breakaway]) -> tuple[float, ..
     bent = model["lugre_friction.static_friction"] / model["lugre_friction.bristle_stiffness"]
 
     def slides(breakaway: Breakaway) -> float:
-        rise, v, y, t = max(abs(breakaway.ramp), _SLOWEST), 0.0, 0.0, 0.0
+        rise, v, y, t = max(abs(breakaway.ramp), SLOWEST), 0.0, 0.0, 0.0
         while y < breakaway.slip - bent and t < REST:
             t += _STEP
             v = max(v + _STEP * (friction[0] + rise * t - float(np.interp(v, speeds, friction))) / mass, 0.0)

@@ -27,7 +27,7 @@ from pneumo_ros.plant.emit import module_text
 from pneumo_ros.plant.reach import inputs_of
 from pneumo_ros.plant.signals import SIGNALS
 
-_MECHANICS = ("drive", "force", "friction", "static_level", "added_mass")
+_MECHANICS = ("drive", "force", "friction", "friction_level", "added_mass")
 SENSED = {"y_measured": "y", **{f"p_{side}_measured": f"p_{side}" for side in SIDES}}  # reading -> state
 
 

@@ -110,7 +110,7 @@ _TABLE = (
     Signal("friction_rise", "sum", "N", "0.0", "added to Coulomb and static friction"),
     Signal("static_scale", "product", "1", "1.0", "multiplies static friction alone"),
     Signal("static_rise", "sum", "N", "0.0", "added to static friction alone"),
-    Signal("static_level", "single", "N", "0.0", "force at which a piston at rest breaks away, here and now"),
+    Signal("friction_level", "single", "N", "0.0", "of steady sliding at this velocity; at rest static friction"),
     Signal("slip", "single", "m/s", "v", "velocity in the Stribeck curve"),
     Signal(
         "stribeck",

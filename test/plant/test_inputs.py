@@ -111,7 +111,7 @@ def test_derivatives_and_outputs_see_the_pressures(sealed: Model) -> None:
     model = sealed.with_parameters({COEFFICIENT: 1e-4})
     low, high = ([[0.0, p, p]] for p in (1e5, 5e5))
     state = model.state(v=0.2)[None]
-    assert model.outputs(state, high)["static_level"] - model.outputs(state, low)["static_level"] == pytest.approx(
+    assert model.outputs(state, high)["friction_level"] - model.outputs(state, low)["friction_level"] == pytest.approx(
         1e-4 * (5e5 - 101325.0)
     )
     bent = model.state(v=0.2, z=6e-5)[None]

@@ -46,9 +46,13 @@ class LugreFriction(Effect):
         resistance = bristle_damping
         return friction, resistance, der_z, rate_z
 
-    def outputs(friction_scale, friction_rise, static_scale, static_rise, static_friction):
-        static_level = friction_scale * static_scale * static_friction + friction_rise + static_rise
-        return static_level
+    def outputs(
+        stribeck, friction_scale, friction_rise, static_scale, static_rise, static_friction, coulomb_friction,
+    ):  # fmt: skip
+        slides = friction_scale * coulomb_friction + friction_rise
+        holds = friction_scale * static_scale * static_friction + friction_rise + static_rise
+        friction_level = slides + (holds - slides) * stribeck
+        return friction_level
 
     invariant = True
 
