@@ -8,14 +8,13 @@ import pytest
 from pneumo_ros.commission import moves
 from pneumo_ros.commission.safe import safe
 from pneumo_ros.commission.simulated import SimulatedRig
-from pneumo_ros.commission.slips import letting_go, ringing, surely_static
+from pneumo_ros.commission.slips import ringing, surely_static
 from pneumo_ros.commission.wiring import as_run
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.equations.breakaway import find_breakaways
 from pneumo_ros.parts.design import Wishes, design
 from pneumo_ros.parts.shelf import load_shelf
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.effects.friction.lugre_friction import LugreFriction
 from pneumo_ros.runs.run import Run
 
 WISHES = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
@@ -71,36 +70,3 @@ def test_ringing_dies_out_at_rest_and_grows_with_the_force(rings: tuple[Model, l
     assert fast > 0.4
     stiff = truth.with_parameters({"lugre_friction.bristle_stiffness": 3.25e6})
     assert ringing(stiff, replace(one, rest=3.0), 1700.0) < 0.01
-
-
-def held(model: Model, ramp: float) -> float:
-    """The most [N] that the bristles of a resting piston hold as the force rises by `ramp` [N/s], by integration."""
-    names = ("static_friction", "coulomb_friction", "bristle_stiffness", "bristle_damping", "breakaway_ratio")
-    own = [model[f"lugre_friction.{name}"] for name in names]
-    begin, v, most, step = 0.85 * own[0], 0.0, 0.0, 1e-5
-    z = begin / own[2]
-    for k in range(round(0.25 * own[0] / (ramp * step))):
-        stribeck = float(np.exp(-((v / model["lugre_friction.stribeck_velocity"]) ** 2)))
-        friction, _, der_z, _ = LugreFriction.equations(v, z, stribeck, 1.0, 0.0, 1.0, 0.0, *own)
-        v += step * (begin + ramp * k * step - friction) / model["piston.mass"]
-        z += step * der_z
-        most = max(most, own[2] * z)
-    return most
-
-
-@pytest.mark.parametrize(
-    ("static", "coulomb", "stribeck", "ramp"), [(116.0, 27.0, 0.003, 40.0), (30.0, 9.4, 0.006, 10.0)]
-)
-def test_a_bristle_lets_go_below_static_friction_as_the_force_rises(
-    static: float, coulomb: float, stribeck: float, ramp: float
-) -> None:
-    """By 5 N and 0.4 N. Inertia lets a slip begin later than `letting_go` says, which counts half of it as error."""
-    values = dict(
-        zip(("static_friction", "coulomb_friction", "stribeck_velocity"), (static, coulomb, stribeck), strict=True)
-    )
-    model = design(WISHES, load_shelf([])).model
-    model = model.with_parameters({**SOFT, **{f"lugre_friction.{name}": one for name, one in values.items()}})
-    below = letting_go(model, ramp)
-    assert below == pytest.approx(static - held(model, ramp), rel=0.35)
-    assert letting_go(model, 4.0 * ramp) > 1.2 * below
-    assert letting_go(model, 0.0) < 0.003 * static
