@@ -19,7 +19,8 @@ SHOWING = {
 
 SHOWN_BY = {  # where an effect acts, or its name -> experiment that shows it
     "chamber": "hold", "friction": "slow-reversals", "line": "fast-reversals", "piston": "fast-reversals",
-    "sensor": "fast-reversals", "valve": "triangle", "constant_load": "slow-reversals", "cushioning": "full-strokes",
+    "motor": "fast-reversals", "sensor": "fast-reversals", "valve": "triangle", "constant_load": "slow-reversals",
+    "cushioning": "full-strokes",
     "dwell_time_breakaway": "pauses", "friction_lag": "fast-reversals", "friction_warmup": "pauses",
     "position_dependent_friction": "full-strokes", "pressure_sensor_offset": "vent", "spring_load": "full-strokes",
     "supply_pressure_droop": "full-strokes", "choked_flow": "full-strokes", "valve_spool_dynamics": "fast-reversals",
@@ -31,11 +32,11 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     """Effects that these recordings neither show nor exclude, why not, and the experiment that shows them.
 
     They would not show the usual size, or they speak for the effect, but not enough. Not those that breakaways showed
-    after the equations did not. None for an axis without valve or one that turns, for which there are no experiments.
+    after the equations did not. An axis without valve or one that turns is to be moved by other means.
     """
     from pneumo_ros.diagnose.score import MARGIN
 
-    if not outcome.steps or _without_experiments(outcome.model):
+    if not outcome.steps:
         return []
     library, last, found = outcome.model.library, outcome.steps[-1], list[dict[str, str]]()
     asked = f"and {MARGIN:g} are asked"
@@ -48,8 +49,10 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     added = {one.effect for one in outcome.added}
     for name, why in ((name, why) for name, why in told.items() if name not in added):
         room = library.find(name).__module__.split(".")[-2]
-        experiment = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
-        found.append({"effect": name, "because": why, "experiment": f"pneumo experiment {experiment}"})
+        motion = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
+        by_hand = f"record {motion.replace('-', ' ')}"
+        experiment = by_hand if _without_experiments(outcome.model) else f"pneumo experiment {motion}"
+        found.append({"effect": name, "because": why, "experiment": experiment})
     return found
 
 
