@@ -22,6 +22,7 @@ from pneumo_ros.shooting.bounded import bounded_minimum, finite
 from pneumo_ros.shooting.robust import huber_loss, huber_weight
 
 Array = NDArray[np.float64]
+Form = tuple[str, frozenset[str]]
 
 Slopes = Sequence[Array]  # derivatives side by side, each (residuals, some): of base parameters, and of a candidate
 
@@ -103,12 +104,20 @@ class Hypothesis:
     t: float = 0.0
     relief: float = 0.0  # log likelihood of the priors that base parameters regain with it
     covariance: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    # the same beside lines of the machine file that may be wrong, and nats of wrong lines that would stand in for it
+    beside_lines: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    wrong_lines: float = np.inf
     slopes: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
 
     @property
     def values(self) -> dict[str, float]:
         """Parameters by dotted name."""
         return {c.name: c.value(u) for c, u in zip(self.coordinates, self.u, strict=True)}
+
+    @property
+    def form(self) -> Form:
+        """The effect's name, and what its shapes belong to, where it has several forms."""
+        return self.name, frozenset(c.shapes for c in self.coordinates)
 
 
 @dataclass(frozen=True)
@@ -133,6 +142,12 @@ class BaseFit:
     def own(self) -> slice:
         """The parameters that are the model's."""
         return slice(0, len(self.names) - self.bends)
+
+    @property
+    def lines(self) -> NDArray[np.bool_]:
+        """Which parameters may be wrong by any amount, as a line of its file: not points of profiles that it lacks."""
+        at = np.arange(len(self.names))
+        return np.asarray((at < self.own.stop) | (at >= self.own.stop + self.uneven))
 
 
 def missing(model: Model, measured: Collection[str], imposed: bool = False) -> dict[str, tuple[Coordinate, ...]]:

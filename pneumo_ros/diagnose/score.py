@@ -417,7 +417,6 @@ def surprise(base: BaseFit, shift: Array) -> float:
     that explains them. The points of a profile that the model lacks are no lines of its file: more than a texture is an
     effect.
     """
-    offset, lines = base.offset + shift, np.ones(len(shift), dtype=bool)
-    lines[base.own.stop : base.own.stop + base.uneven] = False
+    offset, lines = base.offset + shift, base.lines
     wrong = np.logaddexp(-0.5 * offset[lines] ** 2, -WRONG_LINE) - np.logaddexp(0.0, -WRONG_LINE)
     return strain(offset[~lines]) - float(np.sum(wrong))

@@ -11,6 +11,7 @@ from pneumo_ros.diagnose.coordinates import Coordinate, forms, starts
 from pneumo_ros.diagnose.freedom import profile_slopes
 from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
+    Form,
     Hypothesis,
     along,
     block_sums,
@@ -25,10 +26,10 @@ from pneumo_ros.diagnose.hypothesis import (
     wald,
     weights,
 )  # fmt: skip
+from pneumo_ros.diagnose.score import surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
-Form = tuple[str, frozenset[str]]  # an effect's name, and what its shapes belong to, where it has several forms
 
 SHORTLIST, FINALISTS = 4, 3  # candidates fitted to part of the training runs, and to all, of each kind
 STRAINED = (
@@ -135,14 +136,32 @@ def _linear(
             x = solve_within(K, base.residual, w, ridge, offset, low, high)
         after = base.residual + along(K, x)
     w = weights(base.evidence, after, scale)
-    cov = cluster_robust(block_sums(K, w, w * after, base.evidence.block), bread, ridge)[p:, p:]
+    sums = block_sums(K, w, w * after, base.evidence.block)
+    cov = cluster_robust(sums, bread, ridge)[p:, p:]
+    beside, wrong = _beside_lines(base, sums, bread, ridge)
     start = u.copy()
     for k, size in zip(sizes, x[p:], strict=True):
         c = effect[k]
         start[k] = u[k] if c.logarithmic else c.clip(size * u[k])
     relief = relief_of(base, x[:p])
     value = log_likelihood(base.evidence, after) - strain(x[:p] + base.offset)
-    return Hypothesis(name, effect, start, x[:p], after, value, wald(x[p:], cov), relief, cov)
+    t = wald(x[p:], cov)
+    return Hypothesis(name, effect, start, x[:p], after, value, t, relief, cov, beside_lines=beside, wrong_lines=wrong)
+
+
+def _beside_lines(base: BaseFit, sums: Array, bread: Array, ridge: Array) -> tuple[Array, float]:
+    """Covariance (own, own) of sizes beside lines of the machine file that may be wrong by any amount.
+
+    And the nats by which lines that stand in for the usual sizes, each alone, are less probable than as they are: what
+    prior knowledge adds to what these recordings tell of the effect. `bread`: inverse normal matrix, with `ridge`.
+    """
+    p = len(base.names)
+    normal = np.linalg.inv(bread) - np.diag(ridge)
+    free = np.where(np.append(base.lines, np.zeros(len(ridge) - p, dtype=bool)), FREE, ridge)
+    cov = cluster_robust(sums, np.linalg.inv(normal + np.diag(free)), free)[p:, p:]
+    moves = np.linalg.solve(normal[:p, :p] + np.diag(free[:p]), normal[:p, p:])
+    ways = (surprise(base, way * move) for move in moves.T for way in (1.0, -1.0))
+    return cov, max(0.5 * sum(ways) - moves.shape[1] * surprise(base, np.zeros(p)), 0.0)
 
 
 def _known(c: Coordinate, u: float) -> float:
@@ -170,7 +189,6 @@ def shortlist(base: BaseFit, nothing: Hypothesis, ranked: Sequence[Hypothesis], 
     for h in ranked:
         gain = family_likelihoods(base.evidence, h.residual) - before
         helps_gas = bool(np.sum(gain[gas]) > np.sum(gain[~gas]))
-        form = h.name, frozenset(c.shapes for c in h.coordinates)
-        if form not in found and sum(other == helps_gas for other, _ in found.values()) < most:
-            found[form] = helps_gas, h
+        if h.form not in found and sum(other == helps_gas for other, _ in found.values()) < most:
+            found[h.form] = helps_gas, h
     return [h for _, h in found.values()]

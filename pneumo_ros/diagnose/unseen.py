@@ -3,9 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.hypothesis import Hypothesis
+from pneumo_ros.diagnose.hypothesis import Form, Hypothesis
 from pneumo_ros.diagnose.score import MARGIN
+
+Array = NDArray[np.float64]
 
 LEAST = 1e-12  # of a variance, in usual sizes squared
 
@@ -13,12 +16,15 @@ LEAST = 1e-12  # of a variance, in usual sizes squared
 def unseen(screened: Sequence[Hypothesis]) -> dict[str, float]:
     """By name, the nats that an effect of usual size would gain, for effects where these are fewer than asked.
 
-    `screened`: every candidate fitted linearly in several shapes, each size to its usual one.
+    `screened`: every candidate fitted linearly in several shapes, each size to its usual one. Of an effect of several
+    forms the machine may have the one that shows least, as a play before the sensor where the piston never turns.
     """
-    best: dict[str, float] = {}
+    best, least = dict[Form, float](), dict[str, float]()
     for h in screened:
-        best[h.name] = max(best.get(h.name, -np.inf), _nats(h))
-    return {name: nats for name, nats in best.items() if nats < MARGIN}
+        best[h.form] = max(best.get(h.form, -np.inf), _nats(h))
+    for (name, _), nats in best.items():
+        least[name] = min(least.get(name, np.inf), nats)
+    return {name: nats for name, nats in least.items() if nats < MARGIN}
 
 
 def _nats(h: Hypothesis) -> float:
@@ -26,8 +32,14 @@ def _nats(h: Hypothesis) -> float:
 
     With the information H about the sizes it gains tr(H) / 2 on average and costs ln det(1 + H) / 2: see `score`. What
     is uncertain of one point of a profile beside the others does not count.
+
+    A line of the machine file that stands in for it is wrong, whatever its prior, at the price of one effect.
     """
-    if not len(h.covariance):
+    return min(_gain(h.covariance), _gain(h.beside_lines) + h.wrong_lines)
+
+
+def _gain(covariance: Array) -> float:
+    if not len(covariance):
         return 0.0
-    information = np.linalg.inv(h.covariance + LEAST * np.eye(len(h.covariance)))
+    information = np.linalg.inv(covariance + LEAST * np.eye(len(covariance)))
     return 0.5 * float(np.trace(information) - np.linalg.slogdet(np.eye(len(information)) + information)[1])
