@@ -31,15 +31,15 @@ def _nats(h: Hypothesis) -> float:
     """Nats that the effect would gain if each of its sizes were a usual one, with whatever sign.
 
     With the information H about the sizes it gains tr(H) / 2 on average and costs ln det(1 + H) / 2: see `score`. What
-    is uncertain of one point of a profile beside the others does not count.
-
-    A line of the machine file that stands in for it is wrong, whatever its prior, at the price of one effect.
+    is uncertain of one point of a profile beside the others does not count. A line of the machine file that stands in
+    for the effect is wrong, whatever its prior, at the price of one effect.
     """
-    return min(_gain(h.covariance), _gain(h.beside_lines) + h.wrong_lines)
-
-
-def _gain(covariance: Array) -> float:
-    if not len(covariance):
+    if not len(h.covariance):
         return 0.0
-    information = np.linalg.inv(covariance + LEAST * np.eye(len(covariance)))
-    return 0.5 * float(np.trace(information) - np.linalg.slogdet(np.eye(len(information)) + information)[1])
+    known, shown = _information(h.covariance), _information(h.beside_lines)
+    gained = 0.5 * min(float(np.trace(known)), float(np.trace(shown)) + 2.0 * h.wrong_lines)
+    return gained - 0.5 * float(np.linalg.slogdet(np.eye(len(known)) + known)[1])
+
+
+def _information(covariance: Array) -> Array:
+    return np.asarray(np.linalg.inv(covariance + LEAST * np.eye(len(covariance))))
