@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import at_best, relief_of, strain
-from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, log_likelihood
 from pneumo_ros.diagnose.screening import STRAINED
@@ -42,13 +41,17 @@ def followed(
             best.setdefault(h.name, h)
     chosen = [h for h in list(best.values())[:MOST_FOLLOWED] if h.name not in known]
     models = [fitter.refit(fitter.extended(base.model, h), SETS_OF_SLOPES, share=0.0) for h in chosen]
-    found = [_hypothesis(fitter, base, h.name, new) for h, new in zip(chosen, models, strict=True)]
+    found = [_hypothesis(fitter, base, h, new) for h, new in zip(chosen, models, strict=True)]
     return [h for h, _ in found], [held for _, held in found]
 
 
-def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[Hypothesis, Array]:
-    """The hypothesis to judge, and its held-out residual; laws are as free in shape as without a candidate."""
-    (fit, held), own = fitter.fits(new, fitter.added(base.model)), coordinates(new.library.find(name))
+def _hypothesis(fitter: Fitter, base: BaseFit, h: Hypothesis, new: Model) -> tuple[Hypothesis, Array]:
+    """The hypothesis to judge, and its held-out residual; laws are as free in shape as without a candidate.
+
+    Parameters of another form of the effect, which do nothing in this one, are not free.
+    """
+    fit, held = fitter.fits(new, fitter.added(base.model))
+    own = tuple(c for c in h.coordinates if c.name in fit.names)
     shift, after, _value = at_best(fit, fit.residual)
     offset, bends = base.offset.copy(), slice(len(fit.names) - fit.bends, None)
     offset[base.own] = (fit.offset + shift)[[fit.names.index(n) for n in base.names[base.own]]]
@@ -56,9 +59,9 @@ def _hypothesis(fitter: Fitter, base: BaseFit, name: str, new: Model) -> tuple[H
     columns = [fit.names.index(c.name) for c in own]
     std = fitter.deviations(new)
     return Hypothesis(
-        name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, after,
+        h.name, own, np.array([c.u(new[c.name]) for c in own]), offset - base.offset, after,
         likelihood=log_likelihood(fitter.train, after) - strain(offset),
-        t=max(abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size),
+        t=max((abs(new[c.name] - (c.neutral or 0.0)) / std[c.name] for c in own if c.is_size), default=0.0),
         relief=relief_of(base, offset - base.offset),
         slopes=fit.slopes[:, columns] / np.array([c.prior for c in own]),
     ), held.residual + held.slopes @ shift  # fmt: skip

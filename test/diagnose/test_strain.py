@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
@@ -60,10 +61,12 @@ class Played:
 
 def test_it_is_judged_with_laws_as_free_as_without_it() -> None:
     base: Any = fit(MODEL, (LIMIT,), 7.0, [OPENING])  # seven deviations from the known value
-    own = (SimpleNamespace(logarithmic=False),)
-    seen = Hypothesis("valve_null_offset", cast(Any, own), np.ones(1), np.zeros(2), NOISE, relief=20.0)
+    own = coordinates(MODEL.library.find("valve_null_offset"))
+    idle = coordinates(MODEL.library.find("viscous_friction"))[:1]  # as a parameter of another form of an effect
+    seen = Hypothesis("valve_null_offset", (*own, *idle), np.ones(2), np.zeros(2), NOISE, relief=20.0)
     (found,), (held,) = followed(cast(Fitter, Played()), base, [seen], 0.0, [])
     assert found.name == "valve_null_offset"
+    assert found.coordinates == own
     assert found.relief == pytest.approx(24.5, abs=0.1)
     assert found.t == pytest.approx(15.0)
     for left in (found.residual, held):  # the bend is removed from its place
