@@ -67,7 +67,7 @@ Fit = tuple[Array, Array, Array]  # residuals of training and held-out runs over
 
 @dataclass(frozen=True)
 class Best:
-    """Log evidence (2,) of training and held-out runs, and the fit that is best for all of them.
+    """Log evidence (parts,) of training and held-out runs, and the fit that is best for all of them.
 
     noise: by family, size and correlation time of its discrepancy and the scale of the sensors' noise.
     """
@@ -83,11 +83,11 @@ def moved(fit: Fit, fits: tuple[BaseFit, BaseFit], step: Array) -> Fit:
 
 
 class Scoring:
-    """The windows of training and held-out runs, and the score of residuals along them."""
+    """The windows of training and held-out runs, or of some of them alone, and the score of residuals along them."""
 
-    def __init__(self, train: Evidence, held: Evidence) -> None:
-        self.parts = (train, held)
-        self.names = tuple(dict.fromkeys([*train.names, *held.names]))
+    def __init__(self, *parts: Evidence) -> None:
+        self.parts = parts
+        self.names = tuple(dict.fromkeys(name for part in parts for name in part.names))
         # Size and correlation time of the discrepancy and scale of the noise, by family; empty: each model has its own.
         self.usual = dict[str, Noise]()
 
@@ -96,12 +96,12 @@ class Scoring:
         self.usual = {}
         self.usual = {family.name: family.best for family in self._families(model, residuals)}
 
-    def at(self, model: Model, train: Array, held: Array) -> Best:
-        """The log evidence of the residuals over noise that `model` leaves in training, and in held-out runs.
+    def at(self, model: Model, *residuals: Array) -> Best:
+        """The log evidence of the residuals over noise that `model` leaves in each part of the runs.
 
         Noise and discrepancy are those of the greatest likelihood in all of them; base parameters are as they are.
         """
-        return _reached(self._families(model, (train, held)), (train, held, np.zeros(0)))
+        return _reached(self._families(model, residuals), (residuals[0], residuals[-1], np.zeros(0)))
 
     def in_noise_of(self, others: Sequence[Best], model: Model, best: Best) -> list[Best]:
         """A model's best fit, each family in the noise that another one found, if it gains more there than in its own.
@@ -111,7 +111,7 @@ class Scoring:
         """
 
         def evidences(noise: Mapping[str, Noise]) -> list[Array]:
-            return [family.evidence() for family in self._families(model, best.fit[:2], noise)]
+            return [family.evidence() for family in self._families(model, best.fit[: len(self.parts)], noise)]
 
         own, found = evidences(best.noise), list[Best]()
         for other in others:
@@ -124,28 +124,18 @@ class Scoring:
         """Nats that the held-out runs gain by themselves from the best fit of one model, `without`, to that of another.
 
         What no model has may be another thing in them, as where an effect that is still missing acts more: each model
-        has the discrepancy that is best for them alone. The noise of the first may be that of the other, as above.
+        has the discrepancy that is best for them alone.
         """
-
-        def families(model: Model, best: Best, usual: Mapping[str, Noise] | None = None) -> list[_Family]:
-            return self._families(model, best.fit[1:2], usual, self.parts[1:])
-
-        after, before = families(model, best), families(without, plain)
-        there = families(without, plain, {family.name: family.best for family in after})
-        return sum(
-            float(one.evidence()[0] - max(own.evidence()[0], other.evidence()[0]))
-            for one, own, other in zip(after, before, there, strict=True)
-        )
+        alone = Scoring(self.parts[1])
+        alone.usual = self.usual
+        after, before = alone.at(model, best.fit[1]), alone.at(without, plain.fit[1])
+        return float((after.evidence - alone.in_noise_of([after], without, before)[0].evidence).sum())
 
     def _families(
-        self,
-        model: Model,
-        residuals: Sequence[Array],
-        usual: Mapping[str, Noise] | None = None,
-        parts: Sequence[Evidence] = (),
+        self, model: Model, residuals: Sequence[Array], usual: Mapping[str, Noise] | None = None
     ) -> list["_Family"]:
-        """The families of the residuals of `parts`: of the training runs, or of those and of the held-out runs."""
-        usual, parts = usual or self.usual, parts or self.parts[: len(residuals)]
+        """The families of the training runs' residuals, or of those and the held-out runs'."""
+        usual, parts = usual or self.usual, self.parts[: len(residuals)]
         levels = [part.noise_of(model) for part in parts]
         return [_Family(name, parts, residuals, levels, usual.get(name)) for name in self.names]
 

@@ -136,7 +136,7 @@ def test_held_out_recordings_have_a_discrepancy_of_their_own(seed: int) -> None:
     alone = scoring.heldout(MODEL, after, MODEL, before)
     assert together < 0.0 < alone
     assert scoring.heldout(MODEL, before, MODEL, after) < 0.0
-    assert scoring.heldout(MODEL, after, MODEL, after) == pytest.approx(0.0, abs=0.1)
+    assert scoring.heldout(MODEL, after, MODEL, after) == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(6))
