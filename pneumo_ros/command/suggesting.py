@@ -46,12 +46,11 @@ def cannot_say(outcome: "Outcome") -> list[dict[str, str]]:
     for name, one in last.undecided.items():
         why = asked if one.score.nats < MARGIN else f"but: {'; '.join(one.objections)}"
         told[name] = f"{gain.format(one.score.nats)}, {why}"
-    added = {one.effect for one in outcome.added}
+    added, by_hand = {one.effect for one in outcome.added}, _without_experiments(outcome.model)
     for name, why in ((name, why) for name, why in told.items() if name not in added):
         room = library.find(name).__module__.split(".")[-2]
         motion = SHOWN_BY.get(name, SHOWN_BY.get(room, ANY))
-        by_hand = f"record {motion.replace('-', ' ')}"
-        experiment = by_hand if _without_experiments(outcome.model) else f"pneumo experiment {motion}"
+        experiment = f"record {motion.replace('-', ' ')}" if by_hand else f"pneumo experiment {motion}"
         found.append({"effect": name, "because": why, "experiment": experiment})
     return found
 

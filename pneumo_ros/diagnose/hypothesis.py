@@ -104,7 +104,7 @@ class Hypothesis:
     t: float = 0.0
     relief: float = 0.0  # log likelihood of the priors that base parameters regain with it
     covariance: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
-    # the same beside lines of the machine file that may be wrong, and nats of wrong lines that would stand in for it
+    # the same if each line of the machine file may be wrong; and the nats that it costs if such lines explain it
     beside_lines: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     wrong_lines: float = np.inf
     slopes: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)

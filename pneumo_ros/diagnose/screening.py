@@ -152,8 +152,8 @@ def _linear(
 def _beside_lines(base: BaseFit, sums: Array, bread: Array, ridge: Array) -> tuple[Array, float]:
     """Covariance (own, own) of sizes beside lines of the machine file that may be wrong by any amount.
 
-    And the nats by which lines that stand in for the usual sizes, each alone, are less probable than as they are: what
-    prior knowledge adds to what these recordings tell of the effect. `bread`: inverse normal matrix, with `ridge`.
+    And the nats that it costs if such lines explain the usual sizes, one by one: so much is known of the effect by what
+    the file states, and not by these recordings. `bread`: inverse normal matrix, with `ridge`.
     """
     p = len(base.names)
     normal = np.linalg.inv(bread) - np.diag(ridge)

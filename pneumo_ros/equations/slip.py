@@ -6,6 +6,8 @@ slide needs time, in which the force rises by several newtons. All of that depen
 curve of exponent 0.8 lets go 4 N earlier than one of exponent 2, of 100 N.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,15 +34,33 @@ def force_at_slip(
     breakaway deflection over the largest one; level (slips, speeds): friction g [N] at each of `SPEEDS`.
     """
     force = np.empty(len(ramp))
-    share = np.linspace(ratio, 1.0, 200)
-    alpha = 0.5 + 0.5 * np.sin(np.pi / (1.0 - ratio) * (share - 0.5 * (1.0 + ratio)))
-    begin = float(np.interp(_PLASTIC, alpha * share, share))
+    begin = _begin(ratio)
     _until(np.maximum(ramp, SLOWEST), slip, mass, stiffness, damping, ratio, begin, np.log(SPEEDS), level, force)
     return force
 
 
-@entry  # numba finds the types by the call
-def _until(ramp, slip, mass, stiffness, damping, ratio, begin, speeds, level, force):  # type: ignore[no-untyped-def]
+@lru_cache
+def _begin(ratio: float) -> float:
+    """The share of the largest deflection at which `_PLASTIC` of the motion is plastic."""
+    share = np.linspace(ratio, 1.0, 200)
+    return float(np.interp(_PLASTIC, [_sliding(float(s), ratio) * s for s in share], share))
+
+
+@entry
+def _sliding(share: float, ratio: float) -> float:
+    """alpha(s): how much a bristle slides at a share of its largest deflection."""
+    if share <= ratio:
+        return 0.0
+    if share >= 1.0:
+        return 1.0
+    return float(0.5 + 0.5 * np.sin(np.pi / (1.0 - ratio) * (share - 0.5 * (1.0 + ratio))))
+
+
+@entry
+def _until(
+    ramp: Array, slip: Array, mass: Array, stiffness: float, damping: float, ratio: float, begin: float,
+    speeds: Array, level: Array, force: Array,
+) -> None:  # fmt: skip
     """`force` (slips,) of `force_at_slip`: velocity and bristle in turn, what makes a bristle slide implicit.
 
     It begins where the motion is still so slow that the force alone decides it.
@@ -57,13 +77,7 @@ def _until(ramp, slip, mass, stiffness, damping, ratio, begin, speeds, level, fo
             if z < 0.0:
                 z = y = begin * g / stiffness
                 f = begin * g
-            share = stiffness * z / g
-            alpha = 0.0
-            if share >= 1.0:
-                alpha = 1.0
-            elif share > ratio:
-                alpha = 0.5 + 0.5 * np.sin(np.pi / (1.0 - ratio) * (share - 0.5 * (1.0 + ratio)))
-            rate = alpha * stiffness * v / g
+            rate = _sliding(stiffness * z / g, ratio) * stiffness * v / g
             z, y = (z + h * v) / (1.0 + h * rate), y + h * v
             f += h * ramp[k]
             if y >= slip[k]:
