@@ -239,7 +239,8 @@ def _residuals(parts: Sequence[Recording], model: Model, words: tuple[str, ...])
 def _scaled_residuals(model: Model, runs: Sequence[Run]) -> dict[str, float]:
     """Rms of each equation's residual over all runs, with the scale of flow, or of friction, that makes it least.
 
-    Each equation is linear in its scale, so that two values of it give them all.
+    Each equation is linear in its scale, so that two values of it give them all. The scale takes all of a single
+    window's residual, so no residual counts as less than the noise of the sensors.
     """
     halved = model.with_parameters({n: 0.5 * model[n] for n in (*FLOWS, *FRICTION) if n in model.parameters})
     whole, half = ([equation_residuals(one, run) for run in runs] for one in (model, halved))
@@ -253,7 +254,8 @@ def _scaled_residuals(model: Model, runs: Sequence[Run]) -> dict[str, float]:
         square = float(slope @ slope)
         most = _factor(model, FRICTION if name == "momentum" else (*FLOWS, "arctan_flow.voltage_gain"))
         scale = min(max(-float(slope @ r) / square, 1.0 / most - 1.0), most - 1.0) if square > 0.0 else 0.0
-        found[name] = float(np.sqrt(np.mean((r + scale * slope) ** 2)))
+        noise = np.concatenate([one[name].noise for one in whole])
+        found[name] = float(np.sqrt(max(np.mean((r + scale * slope) ** 2), np.mean(noise**2))))
     return found
 
 

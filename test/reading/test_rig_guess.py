@@ -11,8 +11,10 @@ import pytest
 import pneumo_ros as pn
 from pneumo_ros.command.main import main
 from pneumo_ros.command.rig_file import read_rig
+from pneumo_ros.equations.weak import equation_residuals
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.reading.rig_guess import guess_rig
+from pneumo_ros.runs.run import run_for
 
 NOISE = {"position": 5e-6, "pressure_a": 300.0, "pressure_b": 300.0}  # m, Pa
 STROKE = 0.4
@@ -85,6 +87,16 @@ def test_a_machine_that_turns_is_in_degrees() -> None:
     turned = replace(right, position=np.degrees(right.position + 0.5 * vane["piston.stroke"]))
     words = guess_rig(turned, vane).best.words
     assert words == ("deg", f"zero={0.5 * vane['piston.stroke']:g}rad")
+
+
+def test_a_single_window_of_motion_is_no_perfect_fit(truth: pn.Model) -> None:
+    """The scale of friction takes all of its residual: the momentum, 4e-16 N, once decided alone."""
+    short = pn.simulate(truth, "sine:3,0.7", seconds=0.29, noise=NOISE, name="short")
+    short = replace(short, position=short.position - 0.05)  # else an encoder's zero at an end makes sense
+    momentum = equation_residuals(truth, run_for(short, truth))["momentum"]
+    assert len(momentum.value) == 1
+    found = guess_rig(short, truth, known=(), closed=())
+    assert min(one.residuals["momentum"] for one in found.ranked) == pytest.approx(float(momentum.noise[0]), rel=0.1)
 
 
 def test_what_tells_nothing_is_refused(truth: pn.Model, right: pn.Recording) -> None:
