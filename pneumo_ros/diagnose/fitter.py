@@ -33,7 +33,7 @@ from pneumo_ros.shooting.windows import HORIZON
 Array = NDArray[np.float64]
 
 BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: deviation of a uniform prior within 5 %, and its usual change
-PROBE_SHARE = 0.005  # of a usual change of a base parameter, or of a usual size of an effect
+PROBE_SHARE = 5e-6  # of a usual change of a base parameter, or size of an effect: a step for slopes; 5e-7 serves, too
 AS_MUCH = 3.0  # nats: the most that an effect with sizes of one kind alone may lose
 SCREENED, SAMPLES = 50.0, 50_000  # s of recordings by which candidates are ranked first, and samples, if that is longer
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it

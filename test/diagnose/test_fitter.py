@@ -7,16 +7,18 @@ import numpy as np
 import pytest
 from identify.making import PARTS, PRESSURE_NOISE, own, rig, voltage
 
+from pneumo_ros.api.simulating import simulate
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.polishing import polish
 from pneumo_ros.diagnose.refining import refine
 from pneumo_ros.diagnose.screening import screen
 from pneumo_ros.plant import Model, load_model
-from pneumo_ros.runs.run import Run
+from pneumo_ros.runs.run import Run, run_for
 
 STRIBECK, LEAKS = "stribeck_shape", "leakage_to_atmosphere"
 STATIC = "lugre_friction.static_friction"
+OFFSET, RIGHT, LEFT = "valve_null_offset.offset", "dead_zone.right_limit", "dead_zone.left_limit"
 
 
 @lru_cache(maxsize=2)
@@ -35,6 +37,23 @@ def test_a_size_that_another_one_replaces_is_left_neutral() -> None:
     """For a Gaussian Stribeck curve, exponent 2 and no rational tail; a tail with another exponent is similar."""
     found = fitter(STRIBECK).simplest(with_effect(STRIBECK, exponent=1.6, rational=0.5), STRIBECK)
     assert 0.0 in (found[f"{STRIBECK}.rational"], found[f"{STRIBECK}.exponent"] - 2.0)
+
+
+def test_a_valley_that_is_flat_is_followed_to_its_end() -> None:
+    """A null offset is two dead zones that moved apart; the files of both say how far it goes.
+
+    By finite differences of 0.5 and 0.2 mV the slopes of the three differed at the edges of slow openings, and the fit
+    stopped on its way: at -0.234 V here, and half way with a campaign.
+    """
+    axis = load_model("axis")
+    truth = axis.with_effects([*axis.effects, "valve_null_offset"], {OFFSET: -0.24})
+    noise = {"position": 5e-6, "pressure_a": 300.0, "pressure_b": 300.0}
+    slow = [simulate(truth, f"sine:{text}", seconds=20, noise=noise, name=text) for text in ("1.3,0.1", "1.6,0.2")]
+    fitter = Fitter(axis, [run_for(one, axis) for one in slow], candidates=("valve_null_offset",))
+    moved = fitter.refit(axis)
+    assert moved[RIGHT] - moved[LEFT] == pytest.approx(0.48, abs=0.01)
+    found = fitter.refit(moved.with_effects([*moved.effects, "valve_null_offset"], {OFFSET: -0.02}))
+    assert [found[name] for name in (OFFSET, RIGHT, LEFT)] == pytest.approx([-0.24, 0.78, 0.78], abs=1e-3)
 
 
 @pytest.mark.parametrize(("behind", "best"), [(0.0, "rational"), (10.0, "exponent")])
