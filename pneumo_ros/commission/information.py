@@ -31,7 +31,7 @@ from pneumo_ros.shooting.refit import default_free, default_prior
 Array = NDArray[np.float64]
 MINUTE = 60.0  # s
 NORMAL = 1.96  # deviations of a 95 % interval
-OPENED = 0.8  # of the largest command, at which a valve opens at the start of a fit, or before
+OPENED = 0.95  # of the largest command, at which a valve opens at the start of a fit, or before
 LIMITS, GAIN = ("dead_zone.right_limit", "dead_zone.left_limit"), "arctan_flow.voltage_gain"
 
 
@@ -138,19 +138,20 @@ def _as_sheet(model: Model) -> Model:
 
 
 def begun(model: Model, runs: Sequence[Run]) -> list[Model]:
-    """Models to begin a fit with: valves as the data sheet says, and that open later or more steeply by a deviation.
+    """Models to begin a fit with: valves as the data sheet says, and that open later or more steeply.
 
-    The flow over the command has a kink at the dead zone, so a fit finds the best one near its start only. Each of
-    these valves is opened by the commands of `runs`: within its dead zone a limit has no influence.
+    Later by a deviation, or just before the largest command, as ramps end where the piston moves. The flow over the
+    command has a kink at the dead zone, so a fit finds the best one near its start only. Each of these valves is opened
+    by the commands of `runs`: within its dead zone a limit has no influence.
     """
     held = np.concatenate([run.held for run in runs]) - closed_signal(model)
     most = dict(zip(LIMITS, (float(held.max()), float(-held.min())), strict=True))
-    later, steeper = ({n: _farther(model, n) for n in names if n in model.uncertainty} for names in (most, (GAIN,)))
-    found = [model.with_parameters(values) for values in ({}, later, steeper, {**later, **steeper})]
-    return [
-        one.with_parameters({n: min(one[n], OPENED * volts) for n, volts in most.items() if n in later and volts > 0.0})
-        for one in (found if later or steeper else found[:1])
-    ]
+    last = {name: OPENED * volts for name, volts in most.items() if name in model.uncertainty and volts > 0.0}
+    later = {name: min(_farther(model, name), volts) for name, volts in last.items()}
+    steeper = {name: _farther(model, name) for name in (GAIN,) if name in model.uncertainty}
+    asked = {name: min(model[name], volts) for name, volts in last.items()}
+    limits = [asked, last, later] if last else [asked]
+    return [model.with_parameters(one | steep) for steep in ([{}, steeper] if steeper else [{}]) for one in limits]
 
 
 def _farther(model: Model, name: str) -> float:

@@ -28,7 +28,7 @@ FAULTS = {  # words that say that a plug, a hose or a sign is wrong, and how to 
 }
 STEADY = 1e-4  # of its mean: a pressure that moves by less shows nothing
 TRIED = 8  # wirings that explain the trial alike, fitted
-VALVES = 4  # that fits begin with, one after another until a wiring explains the recordings
+VALVES = 6  # that fits begin with, one after another until a wiring explains the recordings
 EXPLAINED = 4.0  # times the noise of windows: up to it a fit explains recordings; wrong wirings leave 13 and more
 MOVED = 0.004  # m, the least that one of the ramps must have moved
 
