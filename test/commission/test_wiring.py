@@ -61,7 +61,7 @@ def test_other_valves_are_tried_only_where_the_stated_one_explains_nothing(
     monkeypatch.setattr(wiring, "_fit", lambda fitter, number: (tried.append(number), fit(fitter, number))[1])
     alike = Guess((Hypothesis(MIRRORED, {"momentum": 1.0}), Hypothesis((), {"momentum": 1.1})), None)
     healthy = pn.simulate(sheet, "sine:2.5,1", seconds=3.0, noise=NOISE, name="healthy")
-    for recording, valves in ((healthy, {0}), (strokes, {0, 1, 2, 3})):
+    for recording, valves in ((healthy, {0}), (strokes, {*range(wiring.VALVES)})):
         tried.clear()
         judged = fitted(alike, [recording], sheet)
         assert judged.best.words == ()
