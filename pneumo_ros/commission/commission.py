@@ -226,7 +226,8 @@ class Commissioning:
     def _possible(self) -> list[Model]:
         """The machine as found, and some as it may be."""
         known = self.known
-        return [known.model, *moves.drawn(known.model, known.deviations, moves.DRAWN, len(self.moves))]
+        count, seed = moves.DRAWN, len(self.moves)
+        return [known.model, *moves.drawn(known.model, known.deviations, count, seed, known.correlation)]
 
     def _otherwise(self) -> list[Model]:
         """The machine as found and as it may be, and many as the data sheet leaves them: the former may be refuted."""

@@ -97,6 +97,17 @@ class Knowledge:
         """Standard deviation of every parameter, in its unit."""
         return {name: one.std for name, one in self.estimates.items()}
 
+    @property
+    def correlation(self) -> Array:
+        """(parameters, parameters) of all that is uncertain, in the order of `deviations`."""
+        whole, names = np.eye(len(self.estimates)), list(self.estimates)
+        if self.known.names:
+            of_known = np.linalg.inv(self.told.information + np.eye(len(self.known.names)))
+            scale = np.sqrt(np.diag(of_known))
+            at = [names.index(name) for name in self.known.names]
+            whole[np.ix_(at, at)] = of_known / np.outer(scale, scale)
+        return whole
+
 
 def knowledge(model: Model, runs: Sequence[Run], before: Model | None = None) -> Knowledge:
     """`model`, as data sheets tell it, fitted to `runs`; without runs, what data sheets alone say.

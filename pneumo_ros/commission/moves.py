@@ -23,6 +23,7 @@ SECONDS = 8.0  # of a move
 CREEP, SLOW, MODERATE, FAST, WIDE_OPEN = 0.015, 0.12, 0.5, 1.5, 6.2  # V beyond the dead zone
 DRAWN = 4  # machines, as they may be, that a move is rehearsed on
 VAGUE = 0.3  # of its value: a deviation beyond which a positive parameter is known by a factor only
+TIED = 0.9  # correlation beyond which parameters are known together only
 REDRAWN = 20  # times that a machine which cannot be is drawn anew
 PATIENCE = 6.0  # s until a piston breaks away
 
@@ -76,18 +77,31 @@ def _constant(model: Model, closed: float, name: str, beyond: float, wide: bool 
     return replace(to_right, experiment=name, trials=trials)
 
 
-def drawn(model: Model, deviations: dict[str, float], count: int, seed: int = 0) -> list[Model]:
-    """Machines as they may be: parameters drawn within their deviations, inside their ranges."""
+def drawn(
+    model: Model, deviations: dict[str, float], count: int, seed: int = 0, correlation: Array | None = None
+) -> list[Model]:
+    """Machines as they may be: parameters drawn within their deviations, inside their ranges.
+
+    correlation (parameters, parameters), in the order of `deviations`: where a valve opens may be known to a millivolt,
+    and the width of its dead zone and its null offset, which together say so, each to a tenth of a volt.
+    """
     random = np.random.default_rng(seed)
     names = tuple(deviations)
     middle = np.array([model[name] for name in names])
     wide = np.array([deviations[name] for name in names])
     low, high = (np.array([getattr(model.specification(n), side) for n in names]) for side in ("low", "high"))
+    together = np.eye(len(names)) if correlation is None else correlation
+    strength, ways = np.linalg.eigh(together)
+    tied = np.max(np.abs(together - np.eye(len(names))), axis=0, initial=0.0) > TIED
     found: list[Model] = []
     for _ in range(REDRAWN * count):
-        values = _around(middle, wide, random.normal(size=len(names)), low, high)
-        values = physical(model, names, values)
-        one = model.with_parameters(dict(zip(names, values.tolist(), strict=True)))
+        share = ways @ (np.sqrt(np.maximum(strength, 0.0)) * random.normal(size=len(names)))
+        values = _around(middle, wide, share, low, high, tied)
+        inside = np.clip(values, low, high)
+        if np.any((inside != values) & tied):  # what goes with it would have to stay inside, too
+            continue
+        inside = physical(model, names, inside)
+        one = model.with_parameters(dict(zip(names, inside.tolist(), strict=True)))
         try:
             one.state()
         except UsageError:  # a chamber without volume at its end
@@ -98,11 +112,11 @@ def drawn(model: Model, deviations: dict[str, float], count: int, seed: int = 0)
     return found
 
 
-def _around(middle: Array, wide: Array, share: Array, low: Array, high: Array) -> Array:
-    """Values `share` deviations away; what is positive and hardly known is drawn by its logarithm."""
-    by_factor = (low >= 0.0) & (middle > 0.0) & (wide > VAGUE * middle)
+def _around(middle: Array, wide: Array, share: Array, low: Array, high: Array, tied: NDArray[np.bool_]) -> Array:
+    """Values `share` deviations away; what is positive, hardly known and not tied is drawn by its logarithm."""
+    by_factor = (low >= 0.0) & (middle > 0.0) & (wide > VAGUE * middle) & ~tied
     factor = np.exp(share * np.log1p(wide / np.where(by_factor, middle, 1.0)))
-    return np.clip(np.where(by_factor, middle * factor, middle + wide * share), low, high)
+    return np.where(by_factor, np.clip(middle * factor, low, high), middle + wide * share)
 
 
 def narrowest(machines: Sequence[Model]) -> Dead:

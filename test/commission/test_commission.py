@@ -21,7 +21,7 @@ from pneumo_ros.experiment.programme import Programme
 from pneumo_ros.experiment.rehearsal import rehearse
 from pneumo_ros.parts.design import Wishes, design
 from pneumo_ros.parts.shelf import load_shelf
-from pneumo_ros.plant import Model
+from pneumo_ros.plant import Model, load_model
 from pneumo_ros.records.corrections import wiring
 
 WISHES = Wishes(supply="6barg", mass="2", bore="25", rod="10", stroke="200", valve_flow="qn 700 l/min")
@@ -107,6 +107,24 @@ def test_a_valve_that_opens_late_is_no_other_zero_of_the_encoder(sheet: Model) -
     assert job.wiring().words == ()
     assert job.known.model["dead_zone.right_limit"] == pytest.approx(0.8875, abs=1e-3)
     assert job.known.model["chambers.volume_a"] == pytest.approx(6.34e-5, rel=0.15)
+
+
+def test_machines_as_they_may_be_open_where_the_recordings_say() -> None:
+    """Dead zone and null offset are known to half a volt each, and the voltages at which the valve opens exactly.
+
+    Drawn each by itself, they were rehearsed on valves open by half a volt at rest, and no move seemed safe.
+    """
+    names = "valve_null_offset.offset", "dead_zone.right_limit", "dead_zone.left_limit"
+    axis = load_model("axis")
+    model = axis.with_effects([*axis.effects, "valve_null_offset"], {names[0]: 0.1})
+    way = np.array([1.0, 1.0, -1.0])
+    found = moves.drawn(model, dict.fromkeys(names, 0.5), 20, correlation=np.outer(way, way))
+    offset, right, left = np.array([[one[name] for name in names] for one in found]).T
+    assert len(found) == 20
+    assert np.ptp(offset) > 0.5
+    assert right - offset == pytest.approx(0.68)
+    assert left + offset == pytest.approx(0.88)
+    assert min(right.min(), left.min()) > 0.0  # what would not stay in its range is drawn anew
 
 
 def test_voltages_shrink_towards_the_dead_zone_of_their_side(sheet: Model) -> None:
