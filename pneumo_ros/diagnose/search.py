@@ -88,7 +88,7 @@ class Search:
         self.logs = lru_cache(16)(lambda model: window_logs(model, self.held.runs, self.horizon))
         self.imposed = any(run.imposed for run in (*train, *held))  # then no motion is predicted
         self.slips = lru_cache(1)(lambda model: None if self.imposed else slips(model, self.train.runs, self.held.runs))
-        self.ranking = lru_cache(1)(self._rank)
+        self.ranking = lru_cache(2)(self._rank)
 
     def predicted(self, model: Model) -> dict[str, float]:
         """By signal, the usual error over noise with which `model` predicts the held-out runs."""
@@ -117,16 +117,21 @@ class Search:
                     self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
                     step = self.round(model, refused)
                     if step.added is None or k == MOST_EFFECTS:
-                        steps.append(replace(step, added=None))
-                        break
-                    self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
-                    new, gone = self.extended(model, step.added)
-                    if step.added.name in gone or self.rises(model, new):
-                        refused = refused | {step.added.name: UNHELPFUL}
-                        continue
+                        two = self.both(model, refused, least) if k + 2 <= MOST_EFFECTS else None
+                        if two is None:
+                            steps.append(replace(step, added=None))
+                            break
+                        made, new, gone = two
+                    else:
+                        self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
+                        new, gone = self.extended(model, step.added)
+                        if step.added.name in gone or self.rises(model, new):
+                            refused = refused | {step.added.name: UNHELPFUL}
+                            continue
+                        made = [step]
                     vanished = vanished | dict.fromkeys(gone, VANISHED)
                     refused = vanished
-                    steps = [without(s, gone, VANISHED) for s in (*steps, step)]
+                    steps = [without(s, gone, VANISHED) for s in (*steps, *made)]
                     model = new
                     least = {name: min(least[name], error) for name, error in self.predicted(new).items()}
                 else:
@@ -147,17 +152,21 @@ class Search:
     def kept(self, base: Model, model: Model, steps: Sequence[Step]) -> Found:
         """The result, without the first addition with which predictions get worse and all later ones.
 
-        An intermediate model is settled like the base and the final model before it is judged worse than them.
+        An intermediate model is settled like the base and the final model before it is judged worse than them. That of
+        a joint round is not judged: it is kept, or not, with the next one.
         """
         steps, before = list(steps), base
         for k in (k for k, step in enumerate(steps) if step.added is not None):
             final = not any(step.added for step in steps[k + 1 :])
+            if steps[k].joint and not final:
+                continue
             if not final and self.rises(before, steps[k + 1].model):
                 steps[k + 1] = replace(steps[k + 1], model=self.settled(steps[k + 1].model, base))
             after = model if final else steps[k + 1].model
             if self.rises(before, after):
-                last = without(steps[k], [step.added.name for step in steps[k:] if step.added], UNHELPFUL)
-                return Found(base, steps[k].model if k else base, (*steps[:k], last))
+                first = k - 1 if k and steps[k - 1].joint else k
+                last = without(steps[first], [step.added.name for step in steps[first:] if step.added], UNHELPFUL)
+                return Found(base, steps[first].model if first else base, (*steps[:first], last))
             before = after
         return Found(base, model, tuple(steps))
 
@@ -174,6 +183,29 @@ class Search:
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
+
+    def both(
+        self, model: Model, refused: Mapping[str, str], least: Mapping[str, float]
+    ) -> tuple[list[Step], Model, list[str]] | None:
+        """Two rounds, their model, and what is gone: the best effect by which predictions get worse, and a second one.
+
+        While two effects are missing, the right one alone may predict worse than a model whose errors make up for each
+        other. So where no effect can be added alone, the two are, if both together predict better than every model
+        before (`least`).
+        """
+        others = {name: why for name, why in refused.items() if why != UNHELPFUL}
+        first = self.round(model, others) if len(others) < len(refused) else None
+        if first is None or first.added is None:
+            return None
+        self.progress(0.8, f"adding {first.added.name} and another")
+        alone, gone = self.extended(model, first.added)
+        second = self.round(alone, {**others, **dict.fromkeys(gone, VANISHED)})
+        if second.added is None or first.added.name in gone:
+            return None
+        new, more = self.extended(alone, second.added)
+        if not {first.added.name, second.added.name}.isdisjoint(more) or not pays(least, self.predicted(new)):
+            return None
+        return [replace(first, joint=True), second], new, [*gone, *more]
 
     def idle(self, model: Model, name: str, std: Mapping[str, float]) -> bool:
         """Whether an effect of the model may be none, or is worth less than is asked of an effect.

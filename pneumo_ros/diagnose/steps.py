@@ -21,6 +21,7 @@ class Step:
     before: dict[str, float]  # scale over noise by family on held-out runs
     after: dict[str, float]
     unseen: dict[str, float] = field(default_factory=dict)  # effects these recordings cannot show: nats at usual size
+    joint: bool = False  # whether predictions are judged with the effect of the next round, too
 
     @property
     def undecided(self) -> dict[str, Candidate]:

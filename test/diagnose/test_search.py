@@ -89,10 +89,36 @@ def test_an_effect_that_predictions_reject_is_tried_again_after_another_is_added
     assert names(search) == [DROOP, LOAD]
 
 
+@pytest.mark.parametrize(("together", "added"), [(1.0, [LOAD, DROOP]), (9.8, [])])
+def test_two_effects_are_added_together_where_each_alone_predicts_worse(together: float, added: list[str]) -> None:
+    """A line delay of 592 nats and a constant load of 398, each taken back as long as the other one was missing."""
+    search = Played([LOAD, DROOP], errors(base=10.0, load=11.0, droop=12.0, load_droop=together))
+    found = search.run()
+    assert [step.added.name for step in found.steps if step.added] == added
+    assert [name for name in found.model.effects if name in (LOAD, DROOP)] == added
+
+
+def test_two_that_were_added_together_are_taken_back_together() -> None:
+    """The last refit helps the base alone."""
+
+    class Settling(Played):
+        def settled(self, model: Model, smaller: Model | None = None) -> Model:
+            return model.with_parameters({"piston.mass": 4.0}) if model.effects == BASE.effects else model
+
+    search = Settling([LOAD, DROOP], errors(base=10.0, load=11.0, droop=12.0, load_droop=3.0))
+    whole, settled = search.logs, {"position": np.full(9, np.log(2.0))}
+    search.logs = cast(Any, lambda model: settled if model["piston.mass"] == 4.0 else whole(model))
+    found = search.run()
+    assert found.model.effects == BASE.effects
+    assert {c.refused for c in found.steps[-1].candidates if c.name in (LOAD, DROOP)} == {UNHELPFUL}
+
+
 def test_it_is_tried_once_beside_each_model() -> None:
+    """And at the end, where nothing else is left, with a second one beside it."""
     search = Played([LOAD, DROOP], errors(base=10.0, load=11.0, droop=5.0, load_droop=5.5))
     assert names(search) == [DROOP]
-    assert search.tried == [(frozenset(), LOAD), (frozenset(), DROOP), (frozenset([DROOP]), LOAD)]
+    beside = frozenset([DROOP])
+    assert search.tried == [(frozenset(), LOAD), (frozenset(), DROOP), (beside, LOAD), (beside, LOAD)]
 
 
 def test_what_vanished_beside_another_does_not_come_back() -> None:
