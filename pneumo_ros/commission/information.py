@@ -161,8 +161,9 @@ def begun(model: Model, runs: Sequence[Run]) -> list[Model]:
     later = {name: min(_farther(model, name), volts) for name, volts in last.items()}
     steeper = {name: _farther(model, name) for name in (GAIN,) if name in model.uncertainty}
     asked = {name: min(model[name], volts) for name, volts in last.items()}
-    limits = [asked, last, later] if last else [asked]
-    return [model.with_parameters(one | steep) for steep in ([{}, steeper] if steeper else [{}]) for one in limits]
+    gains = [{}, steeper] if steeper else [{}]
+    limits = [one for k, one in enumerate((asked, last, later)) if one not in (asked, last, later)[:k]]
+    return [model.with_parameters(one | steep) for steep in gains for one in limits]
 
 
 def _farther(model: Model, name: str) -> float:
