@@ -75,3 +75,7 @@ def test_the_diagnosis_that_is_named_next_keeps_the_last_move_to_judge_by(tmp_pa
         (tmp_path / name).with_name("programme.yaml").write_text("")
     held = f"{tmp_path}/02_dynamic/steps {tmp_path}/02_dynamic/sweep"
     assert _roles(tmp_path) == f"{tmp_path}/*/ --holdout {held}"
+    (tmp_path / "04_steps").mkdir()  # at which the piston stayed
+    (tmp_path / "04_steps" / "programme.yaml").write_text("")
+    each = " ".join(str(tmp_path / name) for name in ("00_wiring", "02_dynamic", "03_steps_broken_1"))
+    assert _roles(tmp_path) == f"{each} --holdout {held}"

@@ -173,11 +173,14 @@ def _finish(options: argparse.Namespace, console: Console, found: "Commissioned"
 
 
 def _roles(folder: Path) -> str:
-    """The recordings for a diagnosis: all folders, and those of the last move to judge by."""
+    """The recordings for a diagnosis: all folders that hold any, and those of the last move to judge by."""
     from pneumo_ros.records.folders import recordings_in
 
-    last = max(path for path in folder.iterdir() if path.is_dir() and "_broken_" not in path.name)
-    return f"{folder}/*/ --holdout {shlex.join(map(str, recordings_in(last)))}"
+    made = sorted(path for path in folder.iterdir() if path.is_dir())
+    held = [path for path in made if recordings_in(path)]  # a move may end before its first recording
+    last = max(path for path in held if "_broken_" not in path.name)
+    trained = f"{folder}/*/" if held == made else shlex.join(map(str, held))
+    return f"{trained} --holdout {shlex.join(map(str, recordings_in(last)))}"
 
 
 def _tune(options: argparse.Namespace, console: Console) -> None:
