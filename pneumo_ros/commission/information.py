@@ -162,7 +162,8 @@ def begun(model: Model, runs: Sequence[Run]) -> list[Model]:
     steeper = {name: _farther(model, name) for name in (GAIN,) if name in model.uncertainty}
     asked = {name: min(model[name], volts) for name, volts in last.items()}
     gains = [{}, steeper] if steeper else [{}]
-    limits = [one for k, one in enumerate((asked, last, later)) if one not in (asked, last, later)[:k]]
+    openings = asked, last, later
+    limits = [one for k, one in enumerate(openings) if one not in openings[:k]]
     return [model.with_parameters(one | steep) for steep in gains for one in limits]
 
 

@@ -96,7 +96,7 @@ def drawn(
     found: list[Model] = []
     for _ in range(REDRAWN * count):
         share = ways @ (np.sqrt(np.maximum(strength, 0.0)) * random.normal(size=len(names)))
-        values = _around(middle, wide, share, low, high, tied)
+        values = _around(middle, wide, share, low, tied)
         inside = np.clip(values, low, high)
         if np.any((inside != values) & tied):  # what goes with it would have to stay inside, too
             continue
@@ -112,11 +112,11 @@ def drawn(
     return found
 
 
-def _around(middle: Array, wide: Array, share: Array, low: Array, high: Array, tied: NDArray[np.bool_]) -> Array:
+def _around(middle: Array, wide: Array, share: Array, low: Array, tied: NDArray[np.bool_]) -> Array:
     """Values `share` deviations away; what is positive, hardly known and not tied is drawn by its logarithm."""
     by_factor = (low >= 0.0) & (middle > 0.0) & (wide > VAGUE * middle) & ~tied
     factor = np.exp(share * np.log1p(wide / np.where(by_factor, middle, 1.0)))
-    return np.where(by_factor, np.clip(middle * factor, low, high), middle + wide * share)
+    return np.where(by_factor, middle * factor, middle + wide * share)
 
 
 def narrowest(machines: Sequence[Model]) -> Dead:

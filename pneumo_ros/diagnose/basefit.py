@@ -27,7 +27,6 @@ from pneumo_ros.diagnose.hypothesis import (
 )
 from pneumo_ros.plant import Model
 from pneumo_ros.shooting.physical import physical
-from pneumo_ros.shooting.problem import FINE, small_step
 
 Array = NDArray[np.float64]
 
@@ -42,7 +41,7 @@ REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the resid
 class Known:
     """Priors of the free parameters: centres and standard deviations; arrays (free,).
 
-    `step`: finite-difference step of each parameter where its value is as large as usual; elsewhere it is smaller.
+    `step`: finite-difference step of each parameter.
     """
 
     names: tuple[str, ...]
@@ -119,8 +118,7 @@ def _slopes(evidence: Evidence, model: Model, known: Known) -> tuple[OwnNoise, A
     """The same, and the noise in which the residuals of the probes counted."""
     ends = np.array([model.specification(n).high for n in known.names])
     here = np.array([model[n] for n in known.names])
-    steps = small_step(known.step, here, known.centre, FINE)
-    steps = np.where(here + steps > ends, -steps, steps)
+    steps = np.where(here + known.step > ends, -known.step, known.step)
     variants = [{}, *({n: x} for n, x in zip(known.names, here + steps, strict=True))]
     residual = residuals(evidence, model, [{}])[0]
     own = OwnNoise(evidence, model, residual)

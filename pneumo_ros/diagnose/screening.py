@@ -42,7 +42,7 @@ IDLE = 1e-3  # noise deviations: a size that changes no residual by more has no 
 # of candidates change by up to 0.1 nats, with half or twice the share by up to 0.15, and the shortlist is the same.
 REWEIGHTED, SETTLED = 5, 1e-3
 FREE = 1e-3  # least prior information about a size in steps: it is free within some thirty steps, as sizes are
-SMALL_STEP = 0.005  # usual sizes: a step as for the slopes of base parameters
+SMALL_STEP = 0.005  # usual sizes: a step for the slope at neutral
 
 
 def couples(everything: Model, effect: Sequence[Coordinate], absent: str) -> bool:

@@ -107,6 +107,7 @@ class Search:
         base = model = self.start
         steps, vanished = list[Step](), dict[str, str]()
         refused = vanished  # with this model: another model may need them
+        back: tuple[Step, Model, list[str]] | None = None  # the best of those that predictions refuse, and its model
         try:
             with until or nullcontext():
                 self.progress(0.05, "refitting the model as given")
@@ -117,7 +118,7 @@ class Search:
                     self.progress(0.1 + 0.15 * k, f"ranking {'further ' if k else ''}candidates")
                     step = self.round(model, refused)
                     if step.added is None or k == MOST_EFFECTS:
-                        two = self.both(model, refused, least) if k + 2 <= MOST_EFFECTS else None
+                        two = self.both(*back, vanished, least) if back and k + 2 <= MOST_EFFECTS else None
                         if two is None:
                             steps.append(replace(step, added=None))
                             break
@@ -127,10 +128,11 @@ class Search:
                         new, gone = self.extended(model, step.added)
                         if step.added.name in gone or self.rises(model, new):
                             refused = refused | {step.added.name: UNHELPFUL}
+                            back = back or (step, new, gone)
                             continue
                         made = [step]
                     vanished = vanished | dict.fromkeys(gone, VANISHED)
-                    refused = vanished
+                    refused, back = vanished, None
                     steps = [without(s, gone, VANISHED) for s in (*steps, *made)]
                     model = new
                     least = {name: min(least[name], error) for name, error in self.predicted(new).items()}
@@ -185,22 +187,20 @@ class Search:
         return new, gone
 
     def both(
-        self, model: Model, refused: Mapping[str, str], least: Mapping[str, float]
+        self, first: Step, alone: Model, gone: list[str], refused: Mapping[str, str], least: Mapping[str, float]
     ) -> tuple[list[Step], Model, list[str]] | None:
-        """Two rounds, their model, and what is gone: the best effect by which predictions get worse, and a second one.
+        """The round of an effect that predictions refuse, and the next one, their model, and what is gone.
 
         While two effects are missing, the right one alone may predict worse than a model whose errors make up for each
         other. So where no effect can be added alone, the two are, if both together predict better than every model
-        before (`least`).
+        before (`least`). alone, gone: as `extended` by the first one.
         """
-        others = {name: why for name, why in refused.items() if why != UNHELPFUL}
-        first = self.round(model, others) if len(others) < len(refused) else None
-        if first is None or first.added is None:
+        assert first.added is not None
+        if first.added.name in gone:
             return None
         self.progress(0.8, f"adding {first.added.name} and another")
-        alone, gone = self.extended(model, first.added)
-        second = self.round(alone, {**others, **dict.fromkeys(gone, VANISHED)})
-        if second.added is None or first.added.name in gone:
+        second = self.round(alone, {**refused, **dict.fromkeys(gone, VANISHED)})
+        if second.added is None:
             return None
         new, more = self.extended(alone, second.added)
         if not {first.added.name, second.added.name}.isdisjoint(more) or not pays(least, self.predicted(new)):

@@ -8,6 +8,7 @@ from scipy.optimize import lsq_linear
 
 from pneumo_ros.diagnose.basefit import ROUNDS_EACH, Known, fit_base, slopes
 from pneumo_ros.diagnose.evidence import Evidence
+from pneumo_ros.diagnose.fitter import PROBE_SHARE, USUAL
 from pneumo_ros.diagnose.hypothesis import OVERLAP, log_likelihood
 from pneumo_ros.plant import Model, load_model
 
@@ -65,7 +66,7 @@ def test_a_slope_is_that_at_the_value_also_where_it_is_small_beside_its_default(
         **NO_LOAD,
         residuals=lambda model, values, ranking=False: np.arctan(values[:, column, None] * volts),
     )
-    known = Known((GAIN,), np.array([0.1]), np.array([1.0]), np.array([0.0005]))
+    known = Known((GAIN,), np.array([0.1]), np.array([1.0]), np.array([PROBE_SHARE * USUAL * 2.0]))
     true = volts / (1.0 + (0.01 * volts) ** 2)
     assert np.allclose(slopes(cast(Evidence, evidence), axis, known)[1][:, 0], true, rtol=0.01)
 

@@ -40,7 +40,7 @@ def test_a_size_that_another_one_replaces_is_left_neutral() -> None:
 
 
 def test_a_valley_that_is_flat_is_followed_to_its_end() -> None:
-    """A null offset is two dead zones that moved apart; the files of both say how far it goes.
+    """A null offset is two dead zones that moved apart; what the file knows of them says how large it is.
 
     By finite differences of 0.5 and 0.2 mV the slopes of the three differed at the edges of slow openings, and the fit
     stopped on its way: at -0.234 V here, and half way with a campaign.
