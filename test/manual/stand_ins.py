@@ -1,6 +1,7 @@
 """What the statements of a page name and do not make themselves: small recordings, tables and machine files."""
 
 import csv
+import re
 import shlex
 from collections.abc import Callable
 from dataclasses import replace
@@ -121,11 +122,13 @@ def write_csv(recording: pn.Recording, path: Path) -> None:
 
 
 def commissioned(folder: Path) -> None:
-    """What a commissioning in the namespace `rig` leaves: its machine, its rig file and its moves."""
+    """What a commissioning in the namespace `rig` leaves: its machine, its rig file, its moves by the page's names."""
     pn.save_model(pn.load_model("axis"), folder / "mine.yaml")
     words = "machine: mine.yaml, namespace: rig, closed: 5V, read_as: 'bar,gauge'"
     (folder / "mine_rig.yaml").write_text(f"rig: {{{words}}}\n")
-    moves = {"03_sines/train_sines": "sine:3,0.5", "19_sweep/train_sweep": "sine:5,0.9"}
+    held = re.findall(r"mended/(\w+/\w+)", (ROOT / "docs" / "commissioning.md").read_text(encoding="utf-8"))
+    assert held, "docs/commissioning.md names no recordings to hold out"
+    moves = {"03_sines/train_sines": "sine:3,0.5"} | {name: f"sine:{5 - k},0.9" for k, name in enumerate(held)}
     recorded(folder / "mended", moves, sent=by_the_rig)
 
 
