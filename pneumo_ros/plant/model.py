@@ -25,6 +25,7 @@ from pneumo_ros.units import KEY, LINE, TURN, unit_along
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # s, the default step
+LONGER = 1e-3  # share by which a step may be longer: 1 kHz by the clock of a recording is 1 kHz
 
 
 class Model:
@@ -487,10 +488,13 @@ class Model:
 
 
 def substeps(sample_time: float, step: float) -> tuple[int, float]:
-    """Number of equal steps in a sample and their length [s], at most `step`; UsageError unless both are positive."""
+    """Number of equal steps in a sample and their length [s], at most `step` and `LONGER` of it.
+
+    UsageError unless both are positive.
+    """
     if not (math.isfinite(sample_time) and math.isfinite(step) and sample_time > 0 and step > 0):
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
-    stride = max(1, math.ceil(sample_time / step - 1e-9))
+    stride = max(1, math.ceil(sample_time / step * (1.0 - LONGER)))
     return stride, sample_time / stride
 
 

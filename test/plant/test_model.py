@@ -5,6 +5,7 @@ import pytest
 
 from pneumo_ros.errors import NumericalError, UsageError
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.plant.model import substeps
 
 VOLTAGE = np.repeat([3.0, -2.0, 0.0, 5.0], 25)
 
@@ -40,6 +41,9 @@ def test_samples_and_steps_may_be_divided_otherwise(axis: Model, start: np.ndarr
     assert whole == pytest.approx(tenth[9::10], rel=1e-9, abs=1e-12)
     uneven = axis.simulate(VOLTAGE, start, sample_time=1e-3, step=3e-4)  # in four steps, none longer than asked
     assert uneven.tobytes() == axis.simulate(VOLTAGE, start, sample_time=1e-3, step=2.5e-4).tobytes()
+    slow = 1e-3 * (1.0 + 7e-9)  # a clock of 1 kHz takes as many steps as 1 kHz does, a sample a percent longer one more
+    assert [substeps(t, 1e-4)[0] for t in (slow, 1e-3, 1.01e-3)] == [10, 10, 11]
+    assert axis.simulate(VOLTAGE, start, sample_time=slow, step=1e-4) == pytest.approx(whole, rel=1e-5, abs=1e-9)
     held = axis.simulate(VOLTAGE, start, sample_time=2e-3, parts=2)
     assert held == pytest.approx(axis.simulate(VOLTAGE, start)[1::2], rel=1e-9, abs=1e-12)
 
