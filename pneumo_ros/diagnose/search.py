@@ -22,6 +22,7 @@ from pneumo_ros.diagnose.prediction import (
     pays,
     recordings,
     removed,
+    typical_error,
     usual_errors,
     window_logs,
     windowed,
@@ -50,7 +51,7 @@ Progress = Callable[[float, str], None]
 TEXTURE = 0.01  # of the drive force: a larger force that is unexplained acts at breakaways, too
 MOST_EFFECTS, ROUNDS = 4, 40  # effects added, and rounds: each tries one of at most eight candidates beside five models
 ENOUGH = 40  # segments: what is found along the signals needs few more
-VANISHED = "its size vanishes beside the effects added later"
+VANISHED = "its size vanishes once all parameters are refitted"
 UNHELPFUL = "predictions of held-out runs over 1 s do not improve with it"
 
 
@@ -127,7 +128,8 @@ class Search:
                         self.progress(0.2 + 0.15 * k, f"adding {step.added.name}")
                         new, gone = self.extended(model, step.added)
                         if step.added.name in gone or self.rises(model, new):
-                            refused = refused | {step.added.name: UNHELPFUL}
+                            why = VANISHED if step.added.name in gone else UNHELPFUL
+                            refused = refused | {step.added.name: why}
                             back = back or (step, new, gone)
                             continue
                         made = [step]
@@ -179,9 +181,10 @@ class Search:
             new = self.fitter.simplest(new, name, self.horizon)
         new = self.polish(new)
         std = self.fitter.deviations(new)
-        older = [n for n in self.fitter.added(new) if n != candidate.name and self.idle(new, n, std)]
-        small = [n for n in self.fitter.added(new) if size_in(new, n) < MATERIAL and n not in self.paying]
-        gone = [n for n in self.fitter.added(new) if n in small or n in older]
+        added = self.fitter.added(new)
+        idle = [n for n in added if (undetermined(new, n, std) if n == candidate.name else self.idle(new, n, std))]
+        small = [n for n in added if size_in(new, n) < MATERIAL and n not in self.paying]
+        gone = [n for n in added if n in small or n in idle]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, gone
@@ -310,8 +313,10 @@ class Search:
         """The candidates; what the best one is worth in predictions, if its size or its share alone is objected to.
 
         What is slow for the usual machine, or less than a texture, hardly shows in windows of an equation, and adds up
-        over a second. Both models have friction refitted to breakaways, on which predictions depend. Once effects are
-        added, an inexact law of theirs may make another one the best: so all are asked, until one pays.
+        over a second. Both models have friction refitted to breakaways, on which predictions depend. A refit may end in
+        another valley, which is no merit of the candidate: so it must predict better than that friction without it,
+        too. Once effects are added, an inexact law of theirs may make another one the best: so all are asked, until
+        one pays.
         """
         for k, one in enumerate(candidates):
             if not one.objections:
@@ -319,7 +324,9 @@ class Search:
             if replace(one, pays=1.0).objections or one.name in self.paying:
                 continue
             new = self.polish(self.refit(self.fitter.extended(model, one.hypothesis)))
-            tried = replace(one, pays=removed(self.predicted(model), self.predicted(new)))
+            alone = new.with_effects([name for name in new.effects if name != one.name])
+            before = min(map(self.predicted, (model, alone)), key=typical_error)
+            tried = replace(one, pays=removed(before, self.predicted(new)))
             candidates = [*candidates[:k], tried, *candidates[k + 1 :]]
             if not tried.objections:
                 self.paying.add(one.name)

@@ -148,6 +148,21 @@ def test_others_are_asked_only_beside_effects_that_were_added(first: bool) -> No
     assert [bool(one.objections) for one in search.asked(search.start, judged)] == [True, first]
 
 
+@pytest.mark.parametrize(("friction_alone", "objected"), [(9.0, False), (4.0, True)])
+def test_friction_that_a_refit_came_upon_is_no_merit_of_a_candidate(friction_alone: float, objected: bool) -> None:
+    """A refit of friction beside a Stribeck exponent of 2.1 +- 0.4 ended in a better valley, which needs no effect."""
+    search = Played([], errors(base=10.0, load=3.0))
+    friction = "lugre_friction.static_friction"
+    search.polish = cast(Any, lambda model: model.with_parameters({friction: 1.1 * BASE[friction]}))
+    there = {(False, False): 10.0, (True, False): friction_alone, (True, True): 3.0}
+    search.logs = cast(
+        Any,
+        lambda model: {"position": np.full(9, np.log(there[model[friction] != BASE[friction], LOAD in model.effects]))},
+    )
+    judged = search.asked(search.start, [replace(candidate(LOAD), share=0.0)])
+    assert bool(judged[0].objections) == objected
+
+
 def test_the_best_one_is_not_asked_if_nothing_is_objected() -> None:
     search = Played([], {})
     judged = [candidate(DROOP), replace(candidate(LOAD), share=0.0)]
@@ -263,6 +278,19 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     search = extending(simplest=simplest)
     new, gone = Search.extended(search, late, candidate(LOAD))
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
+
+
+@pytest.mark.parametrize(("deviation", "gone"), [(0.6, True), (0.3, False)])
+def test_an_effect_that_may_be_none_once_refitted_is_not_added(deviation: float, gone: bool) -> None:
+    size = "constant_load.load"
+
+    def extended(model: Model, h: Hypothesis) -> Model:
+        return model.with_effects([*model.effects, h.name], {size: 1.0})
+
+    search = extending(
+        extended=extended, deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation}
+    )
+    assert (LOAD in Search.extended(search, BASE, candidate(LOAD))[1]) == gone
 
 
 @pytest.mark.parametrize(
