@@ -30,7 +30,9 @@ SHARE_REMOVED = (
 )
 MOST_FITTED = 3  # candidates that are fitted, those with the best starts
 EXPLAINED = 0.9  # share of the error beyond the noise's
-PART_EXPLAINED = 0.3  # share of the error beyond noise: a candidate that removes as much is fitted on, and restarted
+# Share of the error beyond noise: a candidate that removes as much is restarted; and is fitted to all events, by which
+# it seldom removes more.
+PART_EXPLAINED, MOST_EXPLAINED = 0.3, 0.5
 RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size; most of the old error that may be left for another restart
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: an effect's own state starts free in every event, so that it can follow any slow force
@@ -154,25 +156,31 @@ class SlipFits:
         ranked = sorted(zip(forms, begun, strict=True), key=lambda one: one[1][0])
         result = list[Slipping]()
         for best in list(dict.fromkeys(name for (name, _), _ in ranked))[:MOST_FITTED]:
-            fits = [self._tried(name, model, own) for (name, own), (_, model) in ranked if name == best]
+            fits = [self._fitted(name, model, own, some=True) for (name, own), (_, model) in ranked if name == best]
             result.append(min(fits, key=self._left))
+            if self._explains(result[-1]):
+                result[-1] = self._settled(result[-1])
             if self._explains(result[-1]):
                 return sorted(result, key=self._left)
         for k, c in sorted(enumerate(result), key=lambda one: self._left(one[1])):
-            result[k] = self._resized(c)
+            result[k] = self._settled(self._resized(c))
             if self._explains(result[k]):
                 break
         return sorted(result, key=self._left)
 
-    def _tried(self, name: str, begin: Model, own: Sequence[Coordinate]) -> Slipping:
-        """Fitted to some events, and then as in `_settled`."""
-        return self._settled(self._fitted(name, begin, own, some=True), own)
-
-    def _settled(self, c: Slipping, own: Sequence[Coordinate]) -> Slipping:
-        """Fitted to all events if it was to some, explains a part of the held-out ones, and nothing contradicts it."""
-        if not c.some or self.held.share(c.held) < PART_EXPLAINED or c.against >= CONTRADICTED:
+    def _settled(self, c: Slipping) -> Slipping:
+        """Fitted to all events if it was to some, explains most of the held-out ones, and nothing contradicts it."""
+        explains = self.held.share(c.held) >= MOST_EXPLAINED and c.against < CONTRADICTED
+        if not c.some or not explains or not self._determined(c):
             return c
-        return self._fitted(c.name, c.model, own)
+        return self._fitted(c.name, c.model, self._own(c))
+
+    def _determined(self, c: Slipping) -> bool:
+        """Whether it has a size at all; else friction alone explains as much, where its refit ended."""
+        return any(determined(k, c.model[k.name], c.std) for k in self._own(c))
+
+    def _own(self, c: Slipping) -> list[Coordinate]:
+        return [one for one in coordinates(self.alone.library.find(c.name)) if one.name in c.std]
 
     def _fitted(self, name: str, begin: Model, own: Sequence[Coordinate], some: bool = False) -> Slipping:
         """Fitted from `begin` to all training events, or to `some`, with the parameters `own` of the effect free."""
@@ -191,21 +199,20 @@ class SlipFits:
         Refitted friction compensates too small a size, and a descent along both stops early; the equations along the
         motion contradict too large a size.
         """
-        if self.held.share(c.held) < PART_EXPLAINED:
+        if self.held.share(c.held) < PART_EXPLAINED or not self._determined(c):
             return c
-        ways = (self._followed(c, factor) for factor in RESIZED)
+        ways = (self._followed(c, factor) for factor in RESIZED if factor < 1.0 or c.against < CONTRADICTED)
         return next((other for other in ways if other is not c), c)
 
     def _followed(self, c: Slipping, factor: float) -> Slipping:
         """The last improvement among fits that each start at `factor` times the previous size."""
-        effect = coordinates(self.alone.library.find(c.name))
-        own = [one for one in effect if one.name in c.std]
         for _ in range(RESIZINGS):
             if self._explains(c):
-                return self._settled(c, own)
-            new = self._fitted(c.name, c.model.with_parameters(resized(own, c.model, factor)), own, c.some)
+                return c
+            begin = c.model.with_parameters(resized(self._own(c), c.model, factor))
+            new = self._fitted(c.name, begin, self._own(c), c.some)
             if not self._better(new, c):
-                return self._settled(c, own)
+                return c
             c = new
         self.limits.append(
             f"fits of {c.name} to breakaways still got better after its size was changed {RESIZINGS} times"
