@@ -14,7 +14,15 @@ from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
-from pneumo_ros.diagnose.judging import best_forms, by_score, freedom, judged, size_in, undetermined
+from pneumo_ros.diagnose.judging import (
+    NONE_WITHIN,
+    best_forms,
+    by_score,
+    freedom,
+    judged,
+    size_in,
+    undetermined,
+)
 from pneumo_ros.diagnose.measures import force, unexplained_force
 from pneumo_ros.diagnose.polishing import longest, polish
 from pneumo_ros.diagnose.prediction import (
@@ -144,8 +152,9 @@ class Search:
                 self.progress(0.85, "judging breakaways and reversals")
                 new, last = self.slip_round(model)
                 if last is not None and last.added is not None and pays(least, self.predicted(new)):
-                    steps[-1:] = [last, replace(steps[-1], model=new)]
-                    model = new
+                    model, gone = self.cleared(new, last.added.name)
+                    steps[-1:] = [last, replace(steps[-1], model=model)]
+                    steps = [without(s, gone, VANISHED) for s in steps]
                 settled = self.settled(base)
                 return self.kept(settled, self.settled(model, settled), steps)
         except KeyboardInterrupt as stop:
@@ -182,7 +191,7 @@ class Search:
         new = self.polish(new)
         std = self.fitter.deviations(new)
         added = self.fitter.added(new)
-        idle = [n for n in added if (undetermined(new, n, std) if n == candidate.name else self.idle(new, n, std))]
+        idle = [n for n in added if self.idle(new, n, std, model if n == candidate.name else None)]
         small = [n for n in added if size_in(new, n) < MATERIAL and n not in self.paying]
         gone = [n for n in added if n in small or n in idle]
         if gone:
@@ -210,16 +219,29 @@ class Search:
             return None
         return [replace(first, joint=True), second], new, [*gone, *more]
 
-    def idle(self, model: Model, name: str, std: Mapping[str, float]) -> bool:
-        """Whether an effect of the model may be none, or is worth less than is asked of an effect.
+    def cleared(self, model: Model, newest: str) -> tuple[Model, list[str]]:
+        """The model without older effects that are worth nothing beside the `newest`, which breakaways asked for.
 
-        Only an effect whose sizes, over their deviations `std`, leave that open is taken out to see what it is worth.
+        And their names: a Stribeck curve of 25 nats had stood in for a lag of the film.
         """
-        if undetermined(model, name, std):
-            return True
-        if name in self.paying or not undetermined(model, name, std, within=float(np.sqrt(2.0 * MARGIN))):
+        older = [name for name in self.fitter.added(model) if name != newest]
+        larger = self.polish(self.refit(model)) if older else model
+        std = self.fitter.deviations(larger) if older else {}
+        gone = [name for name in older if self.idle(larger, name, std)]
+        if not gone:
+            return model, gone
+        return self.polish(self.refit(larger.with_effects([n for n in larger.effects if n not in gone]))), gone
+
+    def idle(self, model: Model, name: str, std: Mapping[str, float], bare: Model | None = None) -> bool:
+        """Whether an effect of the model is worth less than is asked of an effect; `bare`: the model refitted without.
+
+        Only an effect whose sizes, over their deviations `std`, leave that open is taken out to see what it is worth:
+        an exponent and a tail of one Stribeck curve may each be none, and together be worth 70 nats.
+        """
+        beyond = NONE_WITHIN if name in self.paying else float(np.sqrt(2.0 * MARGIN))
+        if not undetermined(model, name, std, within=beyond):
             return False
-        bare = self.polish(self.refit(model.with_effects([other for other in model.effects if other != name])))
+        bare = bare or self.polish(self.refit(model.with_effects([n for n in model.effects if n != name])))
         return self.fitter.gain(model, bare) < MARGIN
 
     def _polish(self, model: Model) -> Model:

@@ -45,7 +45,16 @@ class Played(Search):
         def larger(model: Model, h: Hypothesis) -> Model:
             return model.with_effects([*model.effects, h.name])
 
-        self.fitter = cast(Fitter, SimpleNamespace(refit=lambda model: model, extended=larger, limits=[]))
+        self.fitter = cast(
+            Fitter,
+            SimpleNamespace(
+                refit=lambda model: model,
+                extended=larger,
+                limits=[],
+                added=lambda model: [name for name in model.effects if name not in BASE.effects],
+                deviations=lambda model: dict.fromkeys(model.parameters, 1e-9),
+            ),
+        )
         self.refit = self.polish = cast(Any, self.fitter.refit)
         self.paying = set()
         self.logs = cast(Any, lambda model: {"position": np.full(9, np.log(errors[self.added(model)]))})
@@ -280,23 +289,40 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
 
 
-@pytest.mark.parametrize(("deviation", "gone"), [(0.6, True), (0.3, False)])
-def test_an_effect_that_may_be_none_once_refitted_is_not_added(deviation: float, gone: bool) -> None:
+@pytest.mark.parametrize(("worth", "gone"), [(7.0, [LOAD]), (50.0, [])])
+def test_what_breakaways_ask_for_may_replace_an_older_effect(worth: float, gone: list[str]) -> None:
+    size = "constant_load.load"
+    both = BASE.with_effects([*BASE.effects, LOAD, STRIBECK], {size: 1.0})
+    search = extending(
+        deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: 0.6},
+        gain=lambda new, old: worth if LOAD in new.effects and LOAD not in old.effects else 0.0,
+    )
+    found = Search.cleared(search, both, STRIBECK)
+    assert found[1] == gone
+    assert (LOAD in found[0].effects) == (not gone)
+
+
+@pytest.mark.parametrize(
+    ("deviation", "worth", "gone"), [(0.6, 7.0, True), (0.6, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)]
+)
+def test_an_effect_that_is_worth_nothing_once_refitted_is_not_added(deviation: float, worth: float, gone: bool) -> None:
     size = "constant_load.load"
 
     def extended(model: Model, h: Hypothesis) -> Model:
         return model.with_effects([*model.effects, h.name], {size: 1.0})
 
     search = extending(
-        extended=extended, deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation}
+        extended=extended,
+        deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: deviation},
+        gain=lambda new, old: worth if LOAD in new.effects and LOAD not in old.effects else 0.0,
     )
     assert (LOAD in Search.extended(search, BASE, candidate(LOAD))[1]) == gone
 
 
 @pytest.mark.parametrize(
     ("deviation", "worth", "gone"),
-    [(0.6, 50.0, True), (0.3, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)],
-    ids=["may be none", "unsure and needed", "unsure and idle", "sure"],
+    [(0.6, 7.0, True), (0.6, 50.0, False), (0.3, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)],
+    ids=["none", "each size may be none", "unsure and needed", "unsure and idle", "sure"],
 )
 def test_an_older_effect_is_worth_something_beside_a_new_one(deviation: float, worth: float, gone: bool) -> None:
     """A dwell time of 10 nats stood in for another Stribeck curve, and stayed when that one was found."""
