@@ -87,14 +87,17 @@ def profile_slopes(fit: BaseFit, name: str, own: Sequence[Coordinate]) -> Array:
     return np.asarray(fit.slopes[:, [columns[c.name] for c in own]] / LAW_SPREAD)
 
 
-def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
-    """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has."""
+def loosened(fit: BaseFit, h: Hypothesis, spread: float | Array) -> BaseFit:
+    """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has.
+
+    spread: one for all points, or (points,).
+    """
     own, u = points_of(fit, h.name), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
     if not own.any():
         return fit
     sizes = [c.name for c in coordinates(fit.model.library.find(h.name)) if c.is_size]
     offset, slopes = fit.offset.copy(), fit.slopes.copy()
-    offset[own] = [u.get(name, 0.0) / spread for name in sizes]
+    offset[own] = np.array([u.get(name, 0.0) for name in sizes]) / spread
     slopes[:, own] *= spread / LAW_SPREAD
     return replace(fit, offset=offset, slopes=slopes)
 

@@ -8,8 +8,9 @@ import pytest
 
 from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
 from pneumo_ros.diagnose.coordinates import coordinates
+from pneumo_ros.diagnose.freedom import LAW_SPREAD
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.judging import best_forms, by_score, lag, magnitude, size_in, swing, undetermined
+from pneumo_ros.diagnose.judging import best_forms, by_score, lag, magnitude, size_in, spot, swing, undetermined
 from pneumo_ros.diagnose.score import MARGIN, Score
 from pneumo_ros.diagnose.steps import Step, without
 from pneumo_ros.errors import UsageError
@@ -184,3 +185,14 @@ def test_half_a_period_of_a_resonance_in_samples(rate: float, samples: float) ->
 def test_an_unknown_role_is_refused() -> None:
     with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, damping"):
         Parameter(0.7, "1", "damping ratio", role="dampin")
+
+
+def test_a_spot_is_a_few_neighbouring_points_beyond_a_texture() -> None:
+    """A tight spot of 5 % of the friction; the texture of a machine, a tenth of usual sizes, has none."""
+    texture = np.random.default_rng(4).normal(0.0, LAW_SPREAD, 25)
+    assert spot(np.clip(texture, -0.2, 0.2)) is None
+    tight = 0.1 * texture
+    tight[9:13] += [0.35, 0.62, 0.52, 0.2]
+    assert spot(tight) == slice(9, 12)
+    assert spot(-tight) == slice(9, 12)
+    assert spot(np.empty(0)) is None
