@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 
 # Usual sizes: of the points of a profile, in equal steps of its logarithm from twice the texture of any machine to one.
 SPREADS = (0.2, 0.45, 1.0)
-SPOT = 1.0  # usual sizes: of neighbouring points alone, as of a tight spot
 NONE_WITHIN = 2.0  # deviations from zero: a smaller size may be zero
 
 
@@ -144,20 +143,20 @@ def _freedoms(base: BaseFit, h: Hypothesis) -> list[_Freedom]:
         names = [c.name for c in coordinates(base.model.library.find(h.name)) if c.is_size]
         at = [names.index(c.name) for c in h.coordinates]
         points = np.full(count, LAW_SPREAD)
-        points[at[own.start] : at[own.stop - 1] + 1] = SPOT
-        alone = replace(h, slopes=h.slopes[:, own])
+        points[at[own.start] : at[own.stop - 1] + 1] = 1.0
         where = float(np.log(0.5 * count * (count + 1)))
-        found.append(_Freedom(points, points[at], occam(base, alone, SPOT) + where))
+        found.append(_Freedom(points, points[at], occam(base, replace(h, slopes=h.slopes[:, own])) + where))
     return found
 
 
 def spot(u: Array) -> slice | None:
     """Which neighbouring points of a profile u (points,) are so large that they are no texture; None where none are.
 
-    Where they gain most, if they are expected within `SPOT` instead of within a texture. That a machine has one tight
-    spot among two dozen even points is less of a surprise than that all points are uneven; where it is, nobody knows.
+    Where they gain most, if they are expected within a usual size, as any size is, and not within a texture. That a
+    machine has one tight spot among two dozen even points is less of a surprise than that all points are uneven; where
+    it is, nobody knows.
     """
-    gains = 0.5 * u**2 * (1.0 / LAW_SPREAD**2 - 1.0 / SPOT**2) - np.log(SPOT / LAW_SPREAD)
+    gains = 0.5 * u**2 * (1.0 / LAW_SPREAD**2 - 1.0) + np.log(LAW_SPREAD)
     sums = np.concatenate([[0.0], np.cumsum(gains)])
     each = [(sums[stop] - sums[start], start, stop) for start in range(len(u)) for stop in range(start + 1, len(u) + 1)]
     most, start, stop = max(each, default=(0.0, 0, 0))

@@ -30,9 +30,7 @@ SHARE_REMOVED = (
 )
 MOST_FITTED = 3  # candidates that are fitted, those with the best starts
 EXPLAINED = 0.9  # share of the error beyond the noise's
-# Share of the error beyond noise: a candidate that removes as much is restarted; and is fitted to all events, by which
-# it seldom removes more.
-PART_EXPLAINED, MOST_EXPLAINED = 0.3, 0.5
+PART_EXPLAINED = 0.3  # share of the error beyond noise: a candidate that removes as much is fitted on, and restarted
 RESIZED, WORTH_RESTART = (2.0, 0.5), 0.9  # times the size; most of the old error that may be left for another restart
 RESIZINGS = 12  # restarts either way: a size that is wrong by more than a factor of 4000 is no start
 # log likelihood: an effect's own state starts free in every event, so that it can follow any slow force
@@ -169,8 +167,8 @@ class SlipFits:
         return sorted(result, key=self._left)
 
     def _settled(self, c: Slipping) -> Slipping:
-        """Fitted to all events if it was to some, explains most of the held-out ones, and nothing contradicts it."""
-        explains = self.held.share(c.held) >= MOST_EXPLAINED and c.against < CONTRADICTED
+        """Fitted to all events if it was to some, explains a part of the held-out ones, and nothing contradicts it."""
+        explains = self.held.share(c.held) >= PART_EXPLAINED and c.against < CONTRADICTED
         if not c.some or not explains or not self._determined(c):
             return c
         return self._fitted(c.name, c.model, self._own(c))
