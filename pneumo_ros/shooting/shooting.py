@@ -25,7 +25,6 @@ _ITERATIONS, _ENOUGH = 20, 0.3  # of one descent: most steps, and least gain in 
 _ROUGHLY = 1e-3  # share of the cost: least gain of a step before starts have been reseated for the first time
 _ROUNDS, _WORTH = 6, 2.0  # most rounds, and least gain of a round before another
 _LEAST, _MOST, _HARDER = 1e-9, 1e3, 30.0  # bounds of the damping, and its growth after a step without gain
-_SHORTER = 0.7  # of the length of a step without gain: the next one is no longer, else it would gain nothing, either
 _SETTLING = 6  # steps of a single start that is worse after the linear prediction
 _WORSE = 1.0  # rise of a segment's loss above which its start is fitted by itself
 
@@ -98,7 +97,7 @@ class Shooting(Problem):
                 break
             *tried, cost = self._step(states, theta, residuals, equations, damping)
             while not cost < costs[-1] and damping <= _MOST:
-                damping = self._harder(theta, equations, damping)
+                damping *= _HARDER
                 *tried, cost = self._step(states, theta, residuals, equations, damping)
             if not cost < costs[-1]:
                 break
@@ -108,15 +107,6 @@ class Shooting(Problem):
             if costs[-2] - costs[-1] < enough:
                 break
         return states, theta, costs
-
-    def _harder(self, theta: Array, equations: Equations, damping: float) -> float:
-        """The damping after a step without gain: one that its bounds cut stays as long under a little more."""
-        longest = _SHORTER * np.linalg.norm(self.move(theta, equations, damping))
-        while damping <= _MOST:
-            damping *= _HARDER
-            if np.linalg.norm(self.move(theta, equations, damping)) <= longest:
-                break
-        return damping
 
     def _step(
         self, states: Array, theta: Array, residuals: Array, equations: Equations, damping: float
