@@ -494,7 +494,8 @@ def substeps(sample_time: float, step: float) -> tuple[int, float]:
     """
     if not (math.isfinite(sample_time) and math.isfinite(step) and sample_time > 0 and step > 0):
         raise UsageError(f"sample time {sample_time} s and step {step} s must be positive")
-    stride = max(1, math.ceil(sample_time / step * (1.0 - LONGER)))
+    stride = max(1, round(sample_time / step))  # the nearest, so that a long sample loses no step
+    stride += sample_time / stride > step * (1.0 + LONGER)
     return stride, sample_time / stride
 
 

@@ -43,6 +43,7 @@ def test_samples_and_steps_may_be_divided_otherwise(axis: Model, start: np.ndarr
     assert uneven.tobytes() == axis.simulate(VOLTAGE, start, sample_time=1e-3, step=2.5e-4).tobytes()
     slow = 1e-3 * (1.0 + 7e-9)  # a clock of 1 kHz takes as many steps as 1 kHz does, a sample a percent longer one more
     assert [substeps(t, 1e-4)[0] for t in (slow, 1e-3, 1.01e-3)] == [10, 10, 11]
+    assert [substeps(t, 1e-4)[0] for t in (0.4, 0.40004, 0.40006)] == [4000, 4000, 4001]  # nor does a long one lose any
     assert axis.simulate(VOLTAGE, start, sample_time=slow, step=1e-4) == pytest.approx(whole, rel=1e-5, abs=1e-9)
     held = axis.simulate(VOLTAGE, start, sample_time=2e-3, parts=2)
     assert held == pytest.approx(axis.simulate(VOLTAGE, start)[1::2], rel=1e-9, abs=1e-12)
