@@ -1,6 +1,6 @@
 """Coordinates in which candidates are fitted: relative sizes, and logarithms of time constants and frequencies."""
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ _FACTOR = 4.0  # between the shapes that are tried first
 _TUNE, _TUNED = 1.25, 7  # factor between frequencies tried, and their number either way: broad resonances overlap
 _FREQUENCY = ("Hz", "rad/s")
 _WIDE, _NARROW = 30.0, 1.0  # prior deviations: of a size over its typical size, of the logarithm of a shape
+_PLACES = 40  # most places tried
 _FEW, _PROFILE = 3, 1.0  # most sizes of no profile; prior deviation in a profile, as in the score: not all have data
 
 
@@ -22,7 +23,8 @@ _FEW, _PROFILE = 3, 1.0  # most sizes of no profile; prior deviation in a profil
 class Coordinate:
     """One parameter of a candidate.
 
-    Its value is neutral + typical u, or typical exp(u) where it is a shape or fades out towards its upper bound.
+    Its value is neutral + typical u, or typical exp(u) where it is a shape or fades out towards its upper bound. A
+    place, a shape that may have either sign and that matters within a distance `typical`, is typical u.
     """
 
     name: str
@@ -38,7 +40,12 @@ class Coordinate:
     @property
     def logarithmic(self) -> bool:
         """Whether u is a logarithm."""
-        return self.typical > 0.0 and (self.neutral is None or self.neutral == self.high)
+        return self.typical > 0.0 and (self.neutral is None or self.neutral == self.high) and not self.is_place
+
+    @property
+    def is_place(self) -> bool:
+        """Whether the parameter says where, within its range, something is."""
+        return self.neutral is None and self.typical > 0.0 and -np.inf < self.low < 0.0
 
     @property
     def is_size(self) -> bool:
@@ -72,6 +79,12 @@ class Coordinate:
         else:
             value = (self.neutral or 0.0) + self.scale * u
         return float(min(max(value, self.low), self.high))
+
+    @property
+    def expected(self) -> float:
+        """Deviation of u in a score: a usual size or a factor e; a place is as likely anywhere."""
+        low, high = self.ends
+        return float(high - low) / math.sqrt(12.0) if self.is_place else 1.0
 
     @property
     def scale(self) -> float:
@@ -114,12 +127,13 @@ def coordinates(effect: type[Effect]) -> tuple[Coordinate, ...]:
     if all(p.neutral is None for p in effect.parameters.values()):
         return ()
     found = tuple(_coordinate(effect, key) for key in effect.parameters)
-    return tuple(replace(c, wide=_PROFILE) for c in found) if is_profile(found) else found
+    points = profile(found)
+    return tuple(replace(c, wide=_PROFILE) if c in points else c for c in found)
 
 
-def is_profile(effect: Sequence[Coordinate]) -> bool:
-    """Whether an effect has so many sizes that they form a profile, which can follow any signal."""
-    return sum(c.is_size for c in effect) > _FEW
+def profile(effect: tuple[Coordinate, ...]) -> tuple[Coordinate, ...]:
+    """The sizes of an effect that are so many that they form a profile, which can follow any signal; () if none do."""
+    return next((kind for kind in kinds(effect) if len(kind) > _FEW), ())
 
 
 def _coordinate(effect: type[Effect], key: str) -> Coordinate:
@@ -127,6 +141,8 @@ def _coordinate(effect: type[Effect], key: str) -> Coordinate:
     typical = p.default
     if p.neutral is not None and p.default == p.neutral:  # by default it does nothing: the usual size is needed
         typical = p.neutral + usual_size(effect, key)
+    elif p.neutral is None and p.default == 0.0 and p.usual is not None:
+        typical = p.usual
     shapes = f"{effect.name}.{p.shapes}" if p.shapes else ""
     return Coordinate(f"{effect.name}.{key}", typical, p.neutral, p.low, p.high, p.unit, p.role, shapes)
 
@@ -157,7 +173,8 @@ def forms(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
 def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
     """Shapes to try: the usual one, and each shape parameter four times larger and smaller, as u (coordinates,).
 
-    Frequencies are tried in finer steps, with the other shapes at four times the usual: damped, broad resonances.
+    Frequencies are tried in finer steps, with the other shapes at four times the usual: damped, broad resonances. And a
+    place all over its range, in steps of the distance that matters.
     """
     usual = np.array([0.0 if c.logarithmic or not c.is_size else 1.0 for c in effect])
     shapes = [k for k, c in enumerate(effect) if not c.is_size and c.logarithmic]
@@ -168,7 +185,16 @@ def starts(effect: tuple[Coordinate, ...]) -> list[Array]:
         factors = _TUNE ** np.arange(-_TUNED, _TUNED + 1.0) if tuned else (_FACTOR, 1.0 / _FACTOR)
         tried = [_moved(effect, begin, [k], float(factor)) for factor in factors]
         found += [u for u in tried if tuned or abs(u[k]) > 0.5]
+    for k, c in enumerate(effect):
+        if c.is_place:
+            found += [np.where(np.arange(len(effect)) == k, at, usual) for at in _spread(*c.ends)]
     return found
+
+
+def _spread(low: float, high: float) -> Array:
+    """Places between two ends, one apart from each other and half as far from the ends; a bounded number of them."""
+    count = min(math.ceil(high - low - 1e-9), _PLACES)
+    return np.array([low + (high - low) * (k + 0.5) / count for k in range(count)])
 
 
 def _moved(effect: tuple[Coordinate, ...], u: Array, which: list[int], factor: float) -> Array:

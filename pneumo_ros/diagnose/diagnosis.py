@@ -117,11 +117,11 @@ def _addition(step: Step, model: Model, std: dict[str, float], before: float, af
     assert step.added is not None
     name, std = step.added.name, std | step.added.std
     values, effect = {}, model.library.find(name)
-    idle = effect.idle({key: model[f"{name}.{key}"] for key in effect.parameters})
+    idle = model.idle(name)
     for key, parameter in effect.parameters.items():
-        if key in idle:
-            continue
         dotted = f"{name}.{key}"
+        if dotted in idle:
+            continue
         values[key] = Value(model[dotted], math.hypot(std.get(dotted, math.inf), finest(model, dotted)), parameter.unit)
     return Addition(
         name, values, tuple(r.name for r in step.rivals), before, after, step.added.hypothesis.t, step.added.score

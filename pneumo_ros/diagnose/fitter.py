@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.basefit import ITERATIONS, SMALL_SHARE, Fitted, Known, base_fit, fit_base, strain
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, forms, is_profile, kinds
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, forms, kinds, profile
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.freedom import conditions, freed, relative, shaping, uneven, unevenness
 from pneumo_ros.diagnose.hypothesis import (
@@ -20,7 +20,7 @@ from pneumo_ros.diagnose.hypothesis import (
     spread,
 )
 from pneumo_ros.diagnose.prediction import typical_error, windowed
-from pneumo_ros.diagnose.score import Scoring, surprise
+from pneumo_ros.diagnose.score import AS_MUCH, Scoring, surprise
 from pneumo_ros.diagnose.stretches import stretches
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.library import FRAME
@@ -34,7 +34,6 @@ Array = NDArray[np.float64]
 
 BASE_PRIOR, USUAL = 0.03, 0.05  # of a base parameter: deviation of a uniform prior within 5 %, and its usual change
 PROBE_SHARE = 5e-6  # of a usual change of a base parameter, or size of an effect: a step for slopes; 5e-7 serves, too
-AS_MUCH = 3.0  # nats: the most that an effect with sizes of one kind alone may lose
 SCREENED, SAMPLES = 50.0, 50_000  # s of recordings by which candidates are ranked first, and samples, if that is longer
 UNSEEN = ("lugre_friction.bristle_stiffness",)  # no equation residual shows it
 
@@ -111,7 +110,7 @@ class Fitter:
         average over what sets in fast, and predictions show it. Forms of an effect were fitted each alone.
         """
         own = coordinates(model.library.find(name))
-        if len(kinds(own)) == 1 or is_profile(own) or len(forms(own)) > 1:
+        if len(kinds(own)) == 1 or profile(own) or len(forms(own)) > 1:
             return model
         alone = [self._alone(model, own, kind) for kind in kinds(own)]
         gains = [self.gain(form, model) for form in alone]

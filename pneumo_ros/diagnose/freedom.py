@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, is_profile
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, profile
 from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
 from pneumo_ros.diagnose.follow import reads_wrong
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, vectors
@@ -64,55 +64,64 @@ def freed(fit: BaseFit, added: Sequence[str], seen: Array) -> BaseFit:
 
 
 def uneven(fit: BaseFit, columns: Mapping[str, Array]) -> BaseFit:
-    """The fit with the sizes of every profile that its model lacks as further base parameters, by their `columns`."""
+    """The fit with the points of every profile that its model lacks as further base parameters, by their `columns`."""
     for name, own in columns.items():
-        if name not in fit.model.effects:
+        if _lacks_profile(fit.model, name):
             bent = _bent(fit, tuple(f"{name} {k}" for k in range(own.shape[1])), own)
             fit = replace(bent, uneven=fit.uneven + own.shape[1])
     return fit
 
 
-def points_of(fit: BaseFit, added: str) -> NDArray[np.bool_]:
-    """Which free parameters (free,) are points of a profile that the model lacks and that is `added`."""
-    return np.array([name.partition(" ")[0] == added for name in fit.names], dtype=bool)
+def _lacks_profile(model: Model, name: str) -> bool:
+    """Whether the model has not the effect `name`, or another form of it than its profile."""
+    points = profile(coordinates(model.library.find(name)))
+    return name not in model.effects or not model.idle(name).isdisjoint(c.name for c in points)
 
 
-def profile_slopes(fit: BaseFit, name: str, own: Sequence[Coordinate]) -> Array:
-    """Slopes (residuals, own) by the coordinates of a profile: those of the texture; (0, 0) for any other effect."""
-    points = points_of(fit, name)
+def points_of(fit: BaseFit, own: Sequence[Coordinate]) -> NDArray[np.bool_]:
+    """Which free parameters (free,) are the points of a profile that the model lacks and to which `own` belong."""
+    added = {c.name.partition(".")[0] for c in own}
+    some = {c.name for c in own}
+    added = {name for name in added if some & {c.name for c in profile(coordinates(fit.model.library.find(name)))}}
+    return np.array([name.partition(" ")[0] in added for name in fit.names], dtype=bool)
+
+
+def profile_slopes(fit: BaseFit, own: Sequence[Coordinate]) -> Array:
+    """Slopes (residuals, own) by the coordinates of a profile: those of the texture; (0, 0) for any other ones."""
+    points = points_of(fit, own)
     if not points.any():
         return np.empty((0, 0))
-    sizes = [c.name for c in coordinates(fit.model.library.find(name)) if c.is_size]
-    columns = dict(zip(sizes, np.flatnonzero(points).tolist(), strict=True))
+    columns = dict(zip(_points(fit, own), np.flatnonzero(points).tolist(), strict=True))
     return np.asarray(fit.slopes[:, [columns[c.name] for c in own]] / LAW_SPREAD)
 
 
-def loosened(fit: BaseFit, h: Hypothesis, spread: float | Array) -> BaseFit:
-    """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has.
+def _points(fit: BaseFit, own: Sequence[Coordinate]) -> list[str]:
+    """Names of all points of the profile to which `own` belong."""
+    return [c.name for c in profile(coordinates(fit.model.library.find(own[0].name.partition(".")[0])))]
 
-    spread: one for all points, or (points,).
-    """
-    own, u = points_of(fit, h.name), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
+
+def loosened(fit: BaseFit, h: Hypothesis, spread: float) -> BaseFit:
+    """The fit with the points of the profile that `h` adds free by `spread` usual sizes, from the sizes `h` has."""
+    own, u = points_of(fit, h.coordinates), dict(zip((c.name for c in h.coordinates), h.u.tolist(), strict=True))
     if not own.any():
         return fit
-    sizes = [c.name for c in coordinates(fit.model.library.find(h.name)) if c.is_size]
     offset, slopes = fit.offset.copy(), fit.slopes.copy()
-    offset[own] = np.array([u.get(name, 0.0) for name in sizes]) / spread
+    offset[own] = np.array([u.get(name, 0.0) for name in _points(fit, h.coordinates)]) / spread
     slopes[:, own] *= spread / LAW_SPREAD
     return replace(fit, offset=offset, slopes=slopes)
 
 
 def flattened(fit: BaseFit, h: Hypothesis) -> BaseFit:
     """The fit with the points of the profile that `h` adds held where they are: without the texture of any machine."""
-    return replace(fit, slopes=np.where(points_of(fit, h.name), 0.0, fit.slopes))
+    return replace(fit, slopes=np.where(points_of(fit, h.coordinates), 0.0, fit.slopes))
 
 
 def unevenness(evidence: Evidence, everything: Model, lacking: Mapping[str, Sequence[Coordinate]]) -> dict[str, Array]:
-    """Change of each residual by a tenth of the usual size of each size of the profiles in `lacking`, by name."""
+    """Change of each residual by a tenth of the usual size of each point of the profiles in `lacking`, by name."""
     found = {}
     for name, effect in lacking.items():
-        if is_profile(effect):
-            variants = [{}, *({c.name: c.value(LAW_SPREAD)} for c in effect if c.is_size)]
+        if points := profile(tuple(effect)):
+            variants = [{}, *({c.name: c.value(LAW_SPREAD)} for c in points)]
             residual = evidence.residuals(everything, vectors(everything, variants), ranking=True)
             found[name] = np.asarray((residual[1:] - residual[0]).T)
     return found

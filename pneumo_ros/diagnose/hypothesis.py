@@ -115,6 +115,11 @@ class Hypothesis:
         return {c.name: c.value(u) for c, u in zip(self.coordinates, self.u, strict=True)}
 
     @property
+    def surprise(self) -> float:
+        """Nats by which its coordinates are less probable than at the middle of what is expected."""
+        return 0.5 * float(np.sum([(u / c.expected) ** 2 for c, u in zip(self.coordinates, self.u, strict=True)]))
+
+    @property
     def form(self) -> Form:
         """The effect's name, and what its shapes belong to, where it has several forms."""
         return self.name, frozenset(c.shapes for c in self.coordinates)

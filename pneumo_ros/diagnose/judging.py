@@ -12,7 +12,7 @@ from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
 from pneumo_ros.diagnose.freedom import LAW_SPREAD, flattened, loosened, points_of
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
-from pneumo_ros.diagnose.score import MARGIN, Best, Score, Scoring, log_prior, moved, occam, surprise
+from pneumo_ros.diagnose.score import AS_MUCH, MARGIN, Best, Score, Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model
 
 Array = NDArray[np.float64]
@@ -62,20 +62,19 @@ def judged(
         reached = list(pool.map(lambda m, h, r: _best(scoring, fits, m, h, r, alone), models, hypotheses, residuals))
     # Base parameters that suit the model better, and that only a candidate came upon, are no merit of the candidate.
     here = alone.fit[2]
-    ends = [
-        np.where(points_of(base, h.name), here, one.best.fit[2]) for h, one in zip(hypotheses, reached, strict=True)
-    ]
+    points = [points_of(base, h.coordinates) for h in hypotheses]
+    ends = [np.where(of_profile, here, one.best.fit[2]) for of_profile, one in zip(points, reached, strict=True)]
     ways = [alone.fit, *(moved(alone.fit, fits, end - here) for end in ends)]
     alone = scoring.best(base.everything, fits, ways, threads=2)
     unaided = surprise(base, alone.fit[2])
     bare = scoring.in_noise_of([one.best for one in reached], base.everything, alone)
-    for h, r, m, beside, alone in zip(hypotheses, residuals, models, reached, bare, strict=True):
+    for h, r, m, of_profile, beside, alone in zip(hypotheses, residuals, models, points, reached, bare, strict=True):
         gained = beside.best.evidence - alone.evidence
-        lines = ~points_of(base, h.name)  # a texture that its points explain is nothing that was known
+        lines = ~of_profile  # a texture that its points explain is nothing that was known
         plain = _plain(scoring, fits, h, alone)
         before, heldout = plain.fit[1], scoring.heldout(m, beside.best, base.everything, plain)
         strained = surprise(base, alone.fit[2] * lines)
-        known = strained - surprise(base, beside.best.fit[2] * lines) - 0.5 * float(h.u @ h.u)
+        known = strained - surprise(base, beside.best.fit[2] * lines) - h.surprise
         prior, after = unaided + beside.prior, beside.best.fit[1]
         found.append(
             Candidate(
@@ -104,63 +103,23 @@ def _best(
 
     `model` holds the hypothesis. Points of a profile that it adds are `loosened`, by the spread of the largest score.
     """
-    points, found = points_of(fits[0], h.name), list[_Beside]()
-    for freed in _freedoms(fits[0], h):
-        spread = freed.points
+    points, found = points_of(fits[0], h.coordinates), list[_Beside]()
+    for spread in _spreads(fits[0], h):
         free, here = (loosened(fits[0], h, spread), loosened(fits[1], h, spread)), h.shift.copy()
         here[points] *= LAW_SPREAD / spread
         own, end = (h.residual, held, here), alone.fit[2]
         starts = [np.where(points, here, end)]
         if points.any():  # and without the profile
-            flat = end.copy()
-            flat[points] = LAW_SPREAD / spread * end[points] - free[0].offset[points]
-            starts.append(flat)
+            starts.append(np.where(points, LAW_SPREAD / spread * end - free[0].offset, end))
         best = scoring.best(model, free, [own, *(moved(own, free, start - here) for start in starts)])
-        found.append(_Beside(best, log_prior(free[0], best.fit[2], h), freed.cost))
+        found.append(_Beside(best, log_prior(free[0], best.fit[2], h), occam(fits[0], h, spread)))
     chosen = max(found, key=lambda one: one.nats)
     return replace(chosen, cost=chosen.cost + float(np.log(len(found))))
 
 
-@dataclass(frozen=True)
-class _Freedom:
-    """How free a hypothesis is: the spread of the points (points,) of a profile that it adds, and what that costs.
-
-    own (coordinates,): the spread of its own coordinates.
-    """
-
-    points: Array
-    own: Array
-    cost: float
-
-
-def _freedoms(base: BaseFit, h: Hypothesis) -> list[_Freedom]:
-    """The freedoms of a hypothesis to choose from: one, or for a profile some spreads, for all points or for a spot."""
-    count = int(points_of(base, h.name).sum())
-    if not count:
-        return [_Freedom(np.empty(0), np.ones(len(h.u)), occam(base, h))]
-    found = [_Freedom(np.full(count, s), np.full(len(h.u), s), occam(base, h, s)) for s in SPREADS]
-    if all(c.is_size for c in h.coordinates) and (own := spot(h.u)) is not None:
-        names = [c.name for c in coordinates(base.model.library.find(h.name)) if c.is_size]
-        at = [names.index(c.name) for c in h.coordinates]
-        points = np.full(count, LAW_SPREAD)
-        points[at[own.start] : at[own.stop - 1] + 1] = 1.0
-        where = float(np.log(0.5 * count * (count + 1)))
-        found.append(_Freedom(points, points[at], occam(base, replace(h, slopes=h.slopes[:, own])) + where))
-    return found
-
-
-def spot(u: Array) -> slice | None:
-    """Which neighbouring points of a profile u (points,) are so large that they are no texture; None where none are.
-
-    Where they gain most, if they are expected within a usual size, as any size is, and not within a texture. That a
-    machine has one tight spot among two dozen even points is less of a surprise than that all points are uneven; where
-    it is, nobody knows.
-    """
-    gains = 0.5 * u**2 * (1.0 / LAW_SPREAD**2 - 1.0) + np.log(LAW_SPREAD)
-    sums = np.concatenate([[0.0], np.cumsum(gains)])
-    each = [(sums[stop] - sums[start], start, stop) for start in range(len(u)) for stop in range(start + 1, len(u) + 1)]
-    most, start, stop = max(each, default=(0.0, 0, 0))
-    return slice(start, stop) if most > 0.0 else None
+def _spreads(base: BaseFit, h: Hypothesis) -> tuple[float, ...]:
+    """The spreads of the sizes of a hypothesis to choose from, in usual sizes."""
+    return SPREADS if points_of(base, h.coordinates).any() else (1.0,)
 
 
 def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone: Best) -> Best:
@@ -168,7 +127,7 @@ def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone
 
     Such a texture is no alternative to the profile: it is a small one, and predicts held-out recordings as well.
     """
-    points = points_of(fits[0], h.name)
+    points = points_of(fits[0], h.coordinates)
     if not points.any():
         return alone
     flat = flattened(fits[0], h), flattened(fits[1], h)
@@ -177,15 +136,20 @@ def _plain(scoring: Scoring, fits: tuple[BaseFit, BaseFit], h: Hypothesis, alone
 
 def freedom(base: BaseFit, h: Hypothesis) -> float:
     """Nats that the freedom of a hypothesis costs beside its likelihood; of a profile, by the spread that suits it."""
-    return min(f.cost + 0.5 * float(((1.0 / f.own**2 - 1.0) * h.u**2).sum()) for f in _freedoms(base, h))
+    return min(occam(base, h, s) + 0.5 * (1.0 / s**2 - 1.0) * float(h.u @ h.u) for s in _spreads(base, h))
 
 
 def best_forms(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Each effect in the form of the best score; best score first."""
-    found = dict[str, Candidate]()
+    """Each effect in the form of the best score; best score first.
+
+    Of forms that explain as much as each other, in the one of the fewest parameters: a spot, and no profile that has
+    one.
+    """
+    found = dict[str, list[Candidate]]()
     for one in by_score(candidates):
-        found.setdefault(one.name, one)
-    return list(found.values())
+        found.setdefault(one.name, []).append(one)
+    alike = [[one for one in own if one.score.nats > own[0].score.nats - AS_MUCH] for own in found.values()]
+    return by_score([min(own, key=lambda one: len(one.hypothesis.u)) for own in alike])
 
 
 def by_score(candidates: Sequence[Candidate]) -> list[Candidate]:

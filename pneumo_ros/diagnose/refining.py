@@ -37,7 +37,7 @@ def refine(
 
     Unless they are `settled`, each starts at the best of a few sizes, and is fitted only as exactly as ranking needs.
     """
-    best = [replace(h, likelihood=-np.inf, slopes=profile_slopes(base, h.name, h.coordinates)) for h in hypotheses]
+    best = [replace(h, likelihood=-np.inf, slopes=profile_slopes(base, h.coordinates)) for h in hypotheses]
     noise = OwnNoise(base.evidence, base.model, base.residual)
     begins = [h.u.copy() for h in hypotheses] if settled else _best_sizes(base, hypotheses, noise)
     moving = list(range(len(best)))

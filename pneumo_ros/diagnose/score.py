@@ -39,6 +39,7 @@ EXACT = 4  # parabolas, each closer to the largest value
 FINE, REACH = 0.01, 4.0  # of the scale of the noise: a step of parabolas; and how many of them at a time
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
 MARGIN = 8.0  # nats that an effect must gain: the logarithm of some thirty candidates, and 5 for odds of 150 to 1
+AS_MUCH = 3.0  # nats: models that differ by less explain as much as each other, and the simpler one is taken
 WRONG_LINE = MARGIN  # a line of the machine file that is wrong: no more than an effect, so that one such line is none
 EVEN, SAFE = 1e-9, 1e-200  # share by which even gaps differ by rounding; products are finite from here to the inverse
 STATED = 0.05  # deviation of the noise from what recordings state
@@ -384,7 +385,8 @@ def occam(base: BaseFit, h: Hypothesis, spread: float = 1.0) -> float:
     Their prior is `spread` usual sizes, or a factor e; what base parameters may replace is no information.
     """
     w = own_weights(base.evidence, h.residual)
-    normal, p = gathered((base.slopes, spread * h.slopes), w, h.residual)[0], len(base.names)
+    expected = spread * np.array([c.expected for c in h.coordinates])
+    normal, p = gathered((base.slopes, h.slopes * expected), w, h.residual)[0], len(base.names)
     own = normal[:p, :p] + np.eye(p)
     information = normal[p:, p:] - normal[p:, :p] @ np.linalg.solve(own, normal[:p, p:])
     return 0.5 * float(np.linalg.slogdet(np.eye(len(information)) + information)[1])
@@ -395,7 +397,7 @@ def log_prior(free: BaseFit, shift: Array, h: Hypothesis) -> float:
 
     Where they hold the candidate's own points, as those of a profile, its coordinates count among them.
     """
-    own = 0.0 if points_of(free, h.name).any() else 0.5 * float(h.u @ h.u)
+    own = 0.0 if points_of(free, h.coordinates).any() else h.surprise
     return -surprise(free, shift) - own
 
 

@@ -77,12 +77,12 @@ def screen(base: BaseFit) -> list[Hypothesis]:
     tasks += [(name, form, SMALL_STEP * starts(form)[0]) for name, form in each if _saturates(form)]
     variants: list[dict[str, float]] = [{}]
     spans: list[tuple[int, int, list[int]]] = []
-    made = {name: slopes for name, effect in each if (slopes := profile_slopes(base, name, effect)).size}
-    for name, effect, u in tasks:
+    made = {form: slopes for _, form in each if (slopes := profile_slopes(base, form)).size}
+    for _, effect, u in tasks:
         shape = {c.name: c.value(x) for c, x in zip(effect, u, strict=True) if not c.is_size}
         sizes = [k for k, c in enumerate(effect) if c.is_size]
         own = []
-        for k in sizes if name not in made else ():
+        for k in sizes if effect not in made else ():
             values = {c.name: c.neutral for c in effect if c.is_size and c.neutral is not None}
             own.append(values | shape | {effect[k].name: effect[k].value(u[k])})
         spans.append((len(variants), len(own), sizes))
@@ -91,7 +91,7 @@ def screen(base: BaseFit) -> list[Hypothesis]:
 
     def fitted(k: int) -> Hypothesis:
         (name, effect, u), (first, count, sizes) = tasks[k], spans[k]
-        changes = made[name] * u if name in made else (residual[first : first + count] - residual[0]).T
+        changes = made[effect] * u if effect in made else (residual[first : first + count] - residual[0]).T
         return _linear(base, name, effect, u, sizes, changes)
 
     with ThreadPoolExecutor(2) as pool:

@@ -45,11 +45,12 @@ class Parameter:
 
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
     time by which a signal is late, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
-    role. `usual`: the usual size, where the default is neutral. `shapes`: the key of the parameter of the same effect
-    without which this one does nothing; an effect with such a parameter has several forms, one for each of its sizes,
-    and a machine has one of them. `optional`: whether a machine file may leave the parameter out, as one may whose
-    default is neutral. `chosen`: whoever builds or wires the machine chooses it, so that fits leave it alone. `span`:
-    in a machine that turns, the width of the range that is allowed at every radius.
+    role. `usual`: the usual size, where the default is neutral; of a shape that may have either sign, as the place of
+    something, the distance that matters. `shapes`: the key of the parameter of the same effect without which this one
+    does nothing; an effect with such a parameter has several forms, one for each kind of its sizes, and a machine has
+    one of them. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral.
+    `chosen`: whoever builds or wires the machine chooses it, so that fits leave it alone. `span`: in a machine that
+    turns, the width of the range that is allowed at every radius.
     """
 
     default: float
@@ -73,6 +74,11 @@ class Parameter:
             raise UsageError(
                 f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"
             )
+
+    @property
+    def kind(self) -> tuple[str, float | None, float, float]:
+        """Unit, neutral value and bounds: sizes of an effect that have them in common belong to one form of it."""
+        return self.unit, self.neutral, self.low, self.high
 
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""
@@ -162,14 +168,16 @@ class Effect:
     def idle(cls, values: Mapping[str, float]) -> set[str]:
         """Keys of the parameters that do nothing at these values, by key: their form of the effect is not this one.
 
-        What shapes a neutral size; and the sizes of other forms that are neutral, where one acts.
+        What shapes a neutral size; and the sizes of other forms, where one acts. Sizes of equal unit, bounds and
+        neutral value are of one form, so that neutral points of a profile belong to it.
         """
         shaped = {key: p.shapes for key, p in cls.parameters.items() if p.shapes}
         if not shaped:
             return set()
-        off = {key for key, p in cls.parameters.items() if p.neutral is not None and values[key] == p.neutral}
-        sizes = {key for key, p in cls.parameters.items() if p.neutral is not None}
-        return {key for key, size in shaped.items() if size in off} | (off if off != sizes else set())
+        sizes = {key: p for key, p in cls.parameters.items() if p.neutral is not None}
+        acting = {p.kind for key, p in sizes.items() if values[key] != p.neutral}
+        off = {key for key, p in sizes.items() if p.kind not in acting}
+        return {key for key, size in shaped.items() if size in off} | (off if acting else set())
 
     @classmethod
     def _check_states(cls) -> None:

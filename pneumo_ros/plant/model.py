@@ -188,6 +188,11 @@ class Model:
         section, _, key = dotted.partition(".")
         return usual_size(next(e for e in self.composition.effects if e.name == section), key)
 
+    def idle(self, effect: str) -> set[str]:
+        """Dotted names of the parameters of one of its effects that do nothing in the form that it has."""
+        kind = next(e for e in self.composition.effects if e.name == effect)
+        return {f"{effect}.{key}" for key in kind.idle({key: self[f"{effect}.{key}"] for key in kind.parameters})}
+
     def cautions(self) -> tuple[str, ...]:
         """Sentences on values that are allowed but unwise, such as friction that is not passive."""
         found = (_caution(self, effect) for effect in self.composition.effects if "caution" in effect.functions)

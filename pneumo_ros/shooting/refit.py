@@ -14,7 +14,6 @@ import numpy as np
 from pneumo_ros.blas import on_one_thread
 from pneumo_ros.errors import DataError, UsageError
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.effect import Effect
 from pneumo_ros.runs.clock import on_one_clock
 from pneumo_ros.runs.run import Run
 from pneumo_ros.shooting.approach import approach
@@ -40,7 +39,7 @@ def default_free(model: Model) -> tuple[str, ...]:
     What whoever built the machine chose is not free either, nor what does nothing in the form that an effect has. What
     the machine file states to be uncertain is free, too, and nothing is free that it states to be known exactly.
     """
-    idle = {f"{one.name}.{key}" for one in model.composition.effects for key in one.idle(_values(model, one))}
+    idle = {name for effect in model.effects for name in model.idle(effect)}
     fitted = [name for name in model.effects if name not in FIXED_EFFECTS]
 
     def usually(name: str) -> bool:
@@ -53,10 +52,6 @@ def default_free(model: Model) -> tuple[str, ...]:
 def to_fit(model: Model, names: Iterable[str]) -> tuple[str, ...]:
     """Those of `names` that `model` has and whose values its machine file does not state to be known exactly."""
     return tuple(name for name in names if name in model.parameters and name not in model.exact)
-
-
-def _values(model: Model, effect: type[Effect]) -> dict[str, float]:
-    return {key: model[f"{effect.name}.{key}"] for key in effect.parameters}
 
 
 def refit(

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
-from pneumo_ros.diagnose.coordinates import coordinates
-from pneumo_ros.diagnose.freedom import LAW_SPREAD
+from pneumo_ros.diagnose.coordinates import coordinates, forms
 from pneumo_ros.diagnose.hypothesis import Hypothesis
-from pneumo_ros.diagnose.judging import best_forms, by_score, lag, magnitude, size_in, spot, swing, undetermined
-from pneumo_ros.diagnose.score import MARGIN, Score
+from pneumo_ros.diagnose.judging import best_forms, by_score, lag, magnitude, size_in, swing, undetermined
+from pneumo_ros.diagnose.score import AS_MUCH, MARGIN, Score
 from pneumo_ros.diagnose.steps import Step, without
 from pneumo_ros.errors import UsageError
 from pneumo_ros.plant import load_model
@@ -155,6 +154,16 @@ def test_an_effect_counts_in_its_best_form() -> None:
     assert [(one.name, one.score.train) for one in found] == [("backlash", 50.0), ("constant_load", 5.0)]
 
 
+@pytest.mark.parametrize(("less", "taken"), [(0.5 * AS_MUCH, 3), (2.0 * AS_MUCH, 25)])
+def test_of_forms_that_explain_as_much_the_simpler_one_counts(less: float, taken: int) -> None:
+    """A spot of the stroke, and a profile of 25 points that has the same spot."""
+    both = forms(coordinates(load_model("axis").library.find("position_dependent_friction")))
+    each = [Hypothesis("", own, np.zeros(len(own)), np.empty(0), np.empty(0)) for own in both]
+    scores = [Score(50.0, 1.0), Score(50.0 - less, 1.0)]
+    some = [replace(candidate(score=score), hypothesis=h) for score, h in zip(scores, each, strict=True)]
+    assert [len(one.hypothesis.u) for one in best_forms(some)] == [taken]
+
+
 class OwnLag(Effect):
     """The spool of a user, whose names are not the catalogue's."""
 
@@ -185,14 +194,3 @@ def test_half_a_period_of_a_resonance_in_samples(rate: float, samples: float) ->
 def test_an_unknown_role_is_refused() -> None:
     with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, damping"):
         Parameter(0.7, "1", "damping ratio", role="dampin")
-
-
-def test_a_spot_is_a_few_neighbouring_points_beyond_a_texture() -> None:
-    """A tight spot of 5 % of the friction; the texture of a machine, a tenth of usual sizes, has none."""
-    texture = np.random.default_rng(4).normal(0.0, LAW_SPREAD, 25)
-    assert spot(np.clip(texture, -0.2, 0.2)) is None
-    tight = 0.1 * texture
-    tight[9:13] += [0.35, 0.62, 0.52, 0.2]
-    assert spot(tight) == slice(9, 12)
-    assert spot(-tight) == slice(9, 12)
-    assert spot(np.empty(0)) is None

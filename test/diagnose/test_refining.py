@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from pneumo_ros.diagnose.coordinates import Coordinate, coordinates
+from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, profile
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.refining import NEAR, bounded_step, keeps_slopes
 from pneumo_ros.plant import load_model
 
 OWN = coordinates(load_model("axis").library.find("asymmetric_viscous_friction"))
-PROFILE = coordinates(load_model("axis").library.find("position_dependent_friction"))
+PROFILE = profile(coordinates(load_model("axis").library.find("position_dependent_friction")))
 BASE = 3  # parameters of the model itself
 
 

@@ -89,6 +89,17 @@ def test_knots_follow_a_smooth_profile_closely() -> None:
     assert levels == pytest.approx([F_C * (1.0 + 0.24 * (1.0 + y)) for y in (-0.5, -0.123, 0.4)], rel=1e-9)
 
 
+def test_a_spot_ends_at_its_width() -> None:
+    """Friction is as beside it from there on; within it follows (1 - s^2)^3, tight or loose."""
+    spot = {"knot_12": 0.0, "spot_height": 0.6, "spot_centre": -0.2, "spot_width": 0.05}
+    at = np.array([0.0, 0.5, -0.5, 1.0, -1.0, 3.0])
+    levels = [sliding("position_dependent_friction", FAST, y=2.0 * (-0.2 + 0.05 * s), **spot) for s in at]
+    shares = np.maximum(1.0 - at**2, 0.0) ** 3
+    assert levels == pytest.approx(F_C * (1.0 + 0.6 * shares), rel=1e-9)
+    loose = sliding("position_dependent_friction", FAST, y=-0.4, **(spot | {"spot_height": -0.6}))
+    assert loose == pytest.approx(0.4 * F_C, rel=1e-9)
+
+
 @pytest.mark.parametrize("time_constant", [0.05, 5e-3, 5e-4, 5e-5])
 def test_lagged_friction_sees_the_velocity_of_then(time_constant: float) -> None:
     """For a steadily growing velocity, a first-order lag gives that of one time constant ago, even a very short one."""

@@ -9,6 +9,12 @@ def coefficient(knot: int) -> Parameter:
     return Parameter(0.1 if knot == 12 else 0.0, "1", meaning, low=-0.9, high=10.0, neutral=0.0)
 
 
+def bump(distance: float) -> float:
+    """(1 - distance^2)^3 within 1, and 0 beyond: nearly a Gaussian of deviation 1/3."""
+    inside = max(1.0 - distance * distance, 0.0)
+    return inside * inside * inside
+
+
 def cubic(u: float, before: float, left: float, right: float, after: float) -> float:
     """Six times the cubic spline at a share u in [0, 1] of the way from a knot to the next, from four coefficients."""
     v = 1.0 - u
@@ -17,9 +23,10 @@ def cubic(u: float, before: float, left: float, right: float, after: float) -> f
 
 
 class PositionDependentFriction(Effect):
-    """Dry friction times 1 + profile(y), a cubic spline with 25 knots evenly over the stroke: tight and loose spots.
+    """Dry friction times 1 + profile(y): one tight or loose spot, or a cubic spline with 25 knots over the stroke.
 
-    Beyond either end the spline goes on with the coefficient of its last knot.
+    The spot is h (1 - ((x - c) / w)^2)^3 within w of its centre c, x = y / stroke. Beyond either end the spline goes on
+    with the coefficient of its last knot.
     """
 
     (
@@ -27,6 +34,17 @@ class PositionDependentFriction(Effect):
         knot_12, knot_13, knot_14, knot_15, knot_16, knot_17, knot_18, knot_19, knot_20, knot_21, knot_22, knot_23,
         knot_24,
     ) = map(coefficient, range(25))  # fmt: skip
+    spot_height = Parameter(
+        0.0, "1", "friction that a spot adds at its centre, as a share", low=-1.0, high=10.0, neutral=0.0, usual=0.3
+    )
+    spot_centre = Parameter(
+        0.0, "1", "centre of the spot from mid stroke, as a share of the stroke", low=-0.5, high=0.5,
+        optional=True, usual=0.05, shapes="spot_height",
+    )  # fmt: skip
+    spot_width = Parameter(
+        0.08, "1", "half the width of the spot, as a share of the stroke", low=0.002, high=1.0,
+        optional=True, shapes="spot_height",
+    )  # fmt: skip
 
     source = (
         "Armstrong-Helouvry 1991, Control of Machines with Friction (friction over position); de Boor 1978, "
@@ -39,7 +57,7 @@ class PositionDependentFriction(Effect):
         y, stroke,
         knot_00, knot_01, knot_02, knot_03, knot_04, knot_05, knot_06, knot_07, knot_08, knot_09, knot_10, knot_11,
         knot_12, knot_13, knot_14, knot_15, knot_16, knot_17, knot_18, knot_19, knot_20, knot_21, knot_22, knot_23,
-        knot_24,
+        knot_24, spot_height, spot_centre, spot_width,
     ):  # fmt: skip
         x = min(24.0 * min(max(y / stroke + 0.5, 0.0), 1.0), 23.999999999)
         # The coefficients around x by the binary digits of the knot below it: selects, which vectorise over lanes.
@@ -91,5 +109,6 @@ class PositionDependentFriction(Effect):
         e1 = d2 if one else d1
         e2 = d3 if one else d2
         e3 = d4 if one else d3
-        friction_scale = max(1.0 + cubic(x, e0, e1, e2, e3) / 6.0, 0.0)
+        spot = spot_height * bump((y / stroke - spot_centre) / spot_width)
+        friction_scale = max(1.0 + spot + cubic(x, e0, e1, e2, e3) / 6.0, 0.0)
         return friction_scale
