@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ALONE = 2  # lanes: a block of lanes takes as long however few of them are filled, as long as three runs do
+# A block of lanes takes as long however few of them are filled, as long as three runs do; but it passes over effects
+# that do not act. So many lanes at most run alone, where at least this share of the effects acts.
+ALONE, MOST_ACT = 2, 0.5
 
 
 def _blocks(rows: NDArray[Any], width: int) -> NDArray[Any]:
@@ -121,20 +123,22 @@ def follow_one(
 
 
 def follow_lanes(
-    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array, acting: NDArray[np.bool_],
-    kept: NDArray[np.int64], wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
+    kernel: ModuleType, measured: Array, inputs: Array, rest: Array, parameters: Array,
+    acting: NDArray[np.bool_], owners: NDArray[np.int64], effects: int, kept: NDArray[np.int64],
+    wanted: NDArray[np.int64], start: float, h: float, stride: int, parts: int, threads: int,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Run `kernel.follow_lanes` over all lanes, on `threads` threads; returns the kept states, wanted derivatives.
 
     measured (lanes or 1, samples, m), rest (lanes, states - m), parameters (lanes, parameters); acting (lanes,
-    effects): by `acting_in`, or all True; kept, wanted: indices of states; `start` [s]: time of the first sample. Both
-    results are (lanes, samples, indices); row 0 of the derivatives repeats row 1. One or two lanes beyond the last
-    whole block, in which all effects act, are run by `kernel.follow`, to the same bit.
+    fading): by `acting_in`, or all True; owners (states,): its column for the effect of each state, -1 where that does
+    not fade; `effects`: how many there are in all; kept, wanted: indices of states; `start` [s]: time of the first
+    sample. Both results are (lanes, samples, indices); row 0 of the derivatives repeats row 1. One or two lanes beyond
+    the last whole block, in which most effects act, are run by `kernel.follow`: to the same bit, if all of them act.
     """
     count, samples, width = len(parameters), measured.shape[1], kernel.LANES
     X, out = np.empty((count, samples, len(kept))), np.empty((count, samples, len(wanted)))
     alone = count % width if count % width <= ALONE else 0
-    alone = alone if acting[count - alone :].all() else 0
+    alone = alone if (~acting[count - alone :]).sum() <= MOST_ACT * alone * effects else 0
     together = count - alone
     some = np.array([acting[k : k + width].any(axis=0) for k in range(0, together, width)])
 
@@ -150,5 +154,7 @@ def follow_lanes(
         given = measured[min(lane, len(measured) - 1)]
         states, rates = follow_one(kernel, given, inputs, rest[lane], parameters[lane], start, h, stride, parts)
         X[lane], out[lane] = states[:, kept], rates[:, wanted]
+        still = [k for k, state in enumerate(kept) if owners[state] >= 0 and not acting[lane, owners[state]]]
+        X[lane][:, still] = X[lane][0, still]
     out[:, 0] = out[:, 1] if samples > 1 else 0.0
     return X, out

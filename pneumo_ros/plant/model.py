@@ -19,6 +19,7 @@ from pneumo_ros.plant.kernels import load_kernel
 from pneumo_ros.plant.lacking import lacking, missing_parameters, without_chambers
 from pneumo_ros.plant.lanes import acting_in, fitting, follow_lanes, follow_one, run_lanes
 from pneumo_ros.plant.library import USUAL_FRAME, Library, is_part
+from pneumo_ros.plant.reach import fades
 from pneumo_ros.plant.uncertainty import SECTION, deviations, nested
 from pneumo_ros.plant.usual import usual_size
 from pneumo_ros.units import KEY, LINE, TURN, unit_along
@@ -438,9 +439,21 @@ class Model:
             raise UsageError(f"{len(held)} voltages do not cover {given.shape[1]} samples")
         stride, h = substeps(sample_time / parts, step)
         kept, wanted = self._indices(states), self._indices(columns)
-        acting = acting_in(self.composition.effects, q)
+        effects = self.composition.effects
+        acting = acting_in(effects, q)
         acting = acting if passing else np.ones_like(acting)
-        return follow_lanes(self.kernel, given, held, tail, q, acting, kept, wanted, start, h, stride, parts, threads)
+        return follow_lanes(
+            self.kernel, given, held, tail, q, acting, self._owners, len(effects), kept, wanted,
+            start, h, stride, parts, threads,
+        )  # fmt: skip
+
+    @cached_property
+    def _owners(self) -> NDArray[np.int64]:
+        """By state (states,), which of the effects that fade has it; -1 for those of all others."""
+        owners = {
+            state: k for k, effect in enumerate(filter(fades, self.composition.effects)) for state in effect.states
+        }
+        return np.array([owners.get(state, -1) for state in self.states], dtype=np.int64)
 
     def _indices(self, names: Iterable[str] | None) -> NDArray[np.int64]:
         chosen = self.states if names is None else tuple(names)
