@@ -319,6 +319,22 @@ def test_an_effect_that_is_worth_nothing_once_refitted_is_not_added(deviation: f
     assert (LOAD in Search.extended(search, BASE, candidate(LOAD))[1]) == gone
 
 
+def test_what_an_effect_is_worth_does_not_depend_on_friction_refitted_to_breakaways() -> None:
+    """Beside a dwell time that refit cost the equations 141 nats, and without it nothing."""
+    size, friction = "constant_load.load", "lugre_friction.static_friction"
+
+    def gain(new: Model, old: Model) -> float:
+        return 121.0 - 141.0 * (new[friction] != BASE[friction])
+
+    search = extending(deviations=lambda model: dict.fromkeys(model.parameters, 1e-9) | {size: 20.0}, gain=gain)
+    search.polish = cast(
+        Any, lambda model: model.with_parameters({friction: 1.1 * BASE[friction]}) if LOAD in model.effects else model
+    )
+    new, gone = Search.extended(search, BASE, candidate(LOAD))
+    assert gone == []
+    assert new[friction] == 1.1 * BASE[friction]
+
+
 @pytest.mark.parametrize(
     ("deviation", "worth", "gone"),
     [(0.6, 7.0, True), (0.6, 50.0, False), (0.3, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)],

@@ -15,7 +15,7 @@ import pneumo_ros
 PACKAGE = Path(pneumo_ros.__file__).parent
 CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
 # modules below every room
-BESIDE = {"blas", "errors", "nearest", "files", "environment", "measured", "units", "yaml_text", "__init__"}
+BESIDE = {"blas", "errors", "nearest", "files", "heap", "environment", "measured", "units", "yaml_text", "__init__"}
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", "rosidl_runtime_py", "rosbag2_py"}
 FILES = sorted(PACKAGE.rglob("*.py"))
 
