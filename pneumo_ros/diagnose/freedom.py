@@ -80,10 +80,9 @@ def _lacks_profile(model: Model, name: str) -> bool:
 
 def points_of(fit: BaseFit, own: Sequence[Coordinate]) -> NDArray[np.bool_]:
     """Which free parameters (free,) are the points of a profile that the model lacks and to which `own` belong."""
-    added = {c.name.partition(".")[0] for c in own}
-    some = {c.name for c in own}
-    added = {name for name in added if some & {c.name for c in profile(coordinates(fit.model.library.find(name)))}}
-    return np.array([name.partition(" ")[0] in added for name in fit.names], dtype=bool)
+    owner = own[0].name.partition(".")[0] if own else ""
+    added = bool(own) and own[0].name in _points(fit, own)
+    return np.array([added and name.partition(" ")[0] == owner for name in fit.names], dtype=bool)
 
 
 def profile_slopes(fit: BaseFit, own: Sequence[Coordinate]) -> Array:
