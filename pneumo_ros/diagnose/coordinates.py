@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.plant.effect import Effect
+from pneumo_ros.plant.effect import Effect, kind_of
 from pneumo_ros.plant.usual import usual_size
 
 Array = NDArray[np.float64]
@@ -152,7 +152,7 @@ def kinds(effect: tuple[Coordinate, ...]) -> list[tuple[Coordinate, ...]]:
     found: dict[tuple[str, float | None, float, float], list[Coordinate]] = {}
     for c in effect:
         if c.is_size:
-            found.setdefault((c.unit, c.neutral, c.low, c.high), []).append(c)
+            found.setdefault(kind_of(c), []).append(c)
     return [tuple(own) for own in found.values()]
 
 

@@ -148,10 +148,9 @@ def _at_once(model: Model, frame: Frame, parameters: Array, corrects: NDArray[np
 
 def _moving(model: Model, parameters: Array) -> list[str]:
     """States of effects of which one acts by any of the parameter vectors (lanes, parameters)."""
-    fading = [effect for effect in model.composition.effects if fades(effect)]
-    acts = acting_in(model.composition.effects, parameters)
-    still = {name for effect, own in zip(fading, acts.T, strict=True) if not own.any() for name in effect.states}
-    return [name for name in model.states[model.frame :] if name not in still]
+    acts = np.any(acting_in(model.composition.effects, parameters), axis=0).tolist()
+    owned = list(zip(model.states, model.owners.tolist(), strict=True))[model.frame :]
+    return [name for name, owner in owned if owner < 0 or acts[owner]]
 
 
 def _some(own: Index) -> Iterator[Index]:

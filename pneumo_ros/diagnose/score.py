@@ -39,7 +39,9 @@ EXACT = 4  # parabolas, each closer to the largest value
 FINE, REACH = 0.01, 4.0  # of the scale of the noise: a step of parabolas; and how many of them at a time
 ROUNDS = 2  # of choosing the discrepancy and the noise in turn
 MARGIN = 8.0  # nats that an effect must gain: the logarithm of some thirty candidates, and 5 for odds of 150 to 1
-AS_MUCH = 3.0  # nats: models that differ by less explain as much as each other, and the simpler one is taken
+# Nats: models that differ by less explain as much as each other, and the simpler one is taken. More are called strong
+# evidence (Kass and Raftery 1995, Bayes factors: twice its logarithm above 6).
+AS_MUCH = 3.0
 WRONG_LINE = MARGIN  # a line of the machine file that is wrong: no more than an effect, so that one such line is none
 EVEN, SAFE = 1e-9, 1e-200  # share by which even gaps differ by rounding; products are finite from here to the inverse
 STATED = 0.05  # deviation of the noise from what recordings state

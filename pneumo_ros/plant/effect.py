@@ -23,7 +23,7 @@ import re
 import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -75,11 +75,6 @@ class Parameter:
                 f"default {self.default!r} of a parameter lies outside its range [{self.low}, {self.high}]"
             )
 
-    @property
-    def kind(self) -> tuple[str, float | None, float, float]:
-        """Unit, neutral value and bounds: sizes of an effect that have them in common belong to one form of it."""
-        return self.unit, self.neutral, self.low, self.high
-
     def check(self, name: str, value: object) -> float:
         """Return value as float; UsageError when it is no number, not finite, or out of range."""
         if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
@@ -98,6 +93,24 @@ class Parameter:
         if math.isinf(self.low):
             return f"{self.high:g} or less"
         return f"{self.low:g} to {self.high:g}"
+
+
+class Bounded(Protocol):
+    """A parameter, or the coordinate of one."""
+
+    @property
+    def unit(self) -> str: ...
+    @property
+    def neutral(self) -> float | None: ...
+    @property
+    def low(self) -> float: ...
+    @property
+    def high(self) -> float: ...
+
+
+def kind_of(size: Bounded) -> tuple[str, float | None, float, float]:
+    """What sizes of one kind have in common, as those for the two directions of motion, or the points of a profile."""
+    return size.unit, size.neutral, size.low, size.high
 
 
 @dataclass(frozen=True)
@@ -168,15 +181,15 @@ class Effect:
     def idle(cls, values: Mapping[str, float]) -> set[str]:
         """Keys of the parameters that do nothing at these values, by key: their form of the effect is not this one.
 
-        What shapes a neutral size; and the sizes of other forms, where one acts. Sizes of equal unit, bounds and
-        neutral value are of one form, so that neutral points of a profile belong to it.
+        What shapes a neutral size; and the sizes of other forms, where one acts. Sizes of one kind are of one form, so
+        that neutral points of a profile belong to it.
         """
         shaped = {key: p.shapes for key, p in cls.parameters.items() if p.shapes}
         if not shaped:
             return set()
         sizes = {key: p for key, p in cls.parameters.items() if p.neutral is not None}
-        acting = {p.kind for key, p in sizes.items() if values[key] != p.neutral}
-        off = {key for key, p in sizes.items() if p.kind not in acting}
+        acting = {kind_of(p) for key, p in sizes.items() if values[key] != p.neutral}
+        off = {key for key, p in sizes.items() if kind_of(p) not in acting}
         return {key for key, size in shaped.items() if size in off} | (off if acting else set())
 
     @classmethod

@@ -187,12 +187,15 @@ class Model:
         """Usual distance of a parameter from its neutral value, above 0; UsageError with the nearest names."""
         self.specification(dotted)
         section, _, key = dotted.partition(".")
-        return usual_size(next(e for e in self.composition.effects if e.name == section), key)
+        return usual_size(self._effect(section), key)
 
     def idle(self, effect: str) -> set[str]:
         """Dotted names of the parameters of one of its effects that do nothing in the form that it has."""
-        kind = next(e for e in self.composition.effects if e.name == effect)
+        kind = self._effect(effect)
         return {f"{effect}.{key}" for key in kind.idle({key: self[f"{effect}.{key}"] for key in kind.parameters})}
+
+    def _effect(self, name: str) -> type[Effect]:
+        return next(effect for effect in self.composition.effects if effect.name == name)
 
     def cautions(self) -> tuple[str, ...]:
         """Sentences on values that are allowed but unwise, such as friction that is not passive."""
@@ -443,12 +446,12 @@ class Model:
         acting = acting_in(effects, q)
         acting = acting if passing else np.ones_like(acting)
         return follow_lanes(
-            self.kernel, given, held, tail, q, acting, self._owners, len(effects), kept, wanted,
+            self.kernel, given, held, tail, q, acting, self.owners, len(effects), kept, wanted,
             start, h, stride, parts, threads,
         )  # fmt: skip
 
     @cached_property
-    def _owners(self) -> NDArray[np.int64]:
+    def owners(self) -> NDArray[np.int64]:
         """By state (states,), which of the effects that fade has it; -1 for those of all others."""
         owners = {
             state: k for k, effect in enumerate(filter(fades, self.composition.effects)) for state in effect.states

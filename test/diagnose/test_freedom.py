@@ -116,9 +116,9 @@ def test_friction_is_never_the_same_all_along_the_stroke(rough: float, goes: boo
     assert (free.bends, free.own) == (25, slice(0, 1))
     left = float(np.sqrt(np.mean(unaided(free).residual ** 2)))
     assert (left < 1.03) is goes
-    uneven_as_added = START.with_effects([*START.effects, PROFILE])
-    assert uneven(replace(fit, model=uneven_as_added), {PROFILE: KNOTS.T}).bends == 0
-    with_spot = uneven_as_added.with_parameters({f"{PROFILE}.knot_12": 0.0, f"{PROFILE}.spot_height": 0.2})
+    with_profile = START.with_effects([*START.effects, PROFILE])
+    assert uneven(replace(fit, model=with_profile), {PROFILE: KNOTS.T}).bends == 0
+    with_spot = with_profile.with_parameters({f"{PROFILE}.knot_12": 0.0, f"{PROFILE}.spot_height": 0.2})
     assert uneven(replace(fit, model=with_spot), {PROFILE: KNOTS.T}).bends == 25  # of another form of the same effect
 
 
