@@ -55,7 +55,7 @@ def in_band(results: Iterable[Result], low: float, high: float) -> list[Result]:
 
 
 def rates_table(results: Sequence[Result]) -> str:
-    """Right, missed and false by kind and by strength."""
+    """Right, missed and false by kind and by strength; "said": what was missed is named as what cannot be said."""
     lines = [_head("hidden effects")]
     for kind, target in HIDING.items():
         some = of_kind(results, kind)
@@ -79,7 +79,7 @@ def excitations_table(results: Sequence[Result]) -> str:
 
 
 def _head(title: str) -> str:
-    columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first")
+    columns = ("exact", "group of 2-3", "right", "missed", "false addition", "named first", "right or said")
     return f"{title:24s}" + "".join(f"{name:>22s}" for name in columns)
 
 
@@ -92,8 +92,15 @@ def _rates(name: str, results: Sequence[Result]) -> str:
         sum(bool(j.missed or j.vague) for j in judged),
         sum(bool(j.false) for j in judged),
         sum({h["effect"] for h in r["hidden"]} == {a["effect"] for a in r["added"]} for r in results),
+        sum(right_or_said(r, j) for r, j in zip(results, judged, strict=True)),
     )
     return f"{name:24s}" + "".join(f"{rate(count, len(results)):>22s}" for count in counts)
+
+
+def right_or_said(result: Result, judged: Judgement) -> bool:
+    """Whether a diagnosis is right, or says of each effect that it missed that these recordings cannot tell."""
+    unsaid = {*judged.missed, *judged.vague} - {*result.get("cannot_say", ())}
+    return judged.right or not (unsaid or judged.false)
 
 
 def empty_table(results: Sequence[Result]) -> str:

@@ -126,6 +126,23 @@ def test_a_method_is_right_if_it_names_the_hidden_effect_first(monkeypatch: pyte
     assert "line_delay +1 2 s" in printed
 
 
+def test_a_missed_effect_is_said_where_the_diagnosis_says_that_it_cannot_tell(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import blind_tables
+
+    hidden = [{"effect": name, "in_catalogue": True} for name in ("constant_load", "valve_internal_leakage")]
+    load = {"effect": "constant_load", "group": []}
+    one = {"kind": "pair", "strength": 0.5, "hidden": hidden, "added": [load]}
+    said = {**one, "cannot_say": ["valve_internal_leakage"]}
+    false = {**said, "added": [load, {"effect": "backlash", "group": []}]}
+    right = {**one, "added": [load, {"effect": "valve_internal_leakage", "group": []}]}
+    results = [one, said, false, right]
+    judged = [blind_tables.judgement(result) for result in results]
+    told = [blind_tables.right_or_said(*pair) for pair in zip(results, judged, strict=True)]
+    assert told == [False, True, False, True]
+    assert blind_tables.rates_table(results).splitlines()[1].split("   (target")[0].endswith("2/4 50 % (15-85)")
+
+
 SIDED = (
     "valve_null_offset", "leakage_to_atmosphere", "dead_volume", "spring_load", "constant_load", "choked_flow",
     "asymmetric_viscous_friction", "position_dependent_friction", "supply_pressure_droop", "valve_internal_leakage",

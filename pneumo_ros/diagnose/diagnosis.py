@@ -23,6 +23,8 @@ from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
+CORRELATED = (1.6, 6.4)  # s: what no model has may correlate errors for longer than between neighbouring windows
+
 
 def diagnose(
     model: Model, train: Sequence[Run], held: Sequence[Run], *, progress: Progress | None = None,
@@ -58,7 +60,7 @@ def conclude(search: Search, found: Found, tell: Progress) -> Outcome:
         waterfall.append((_label(models, k), typical_error(search.predicted(model))))
         if k in (1, len(models) - 1):
             comparisons[k] = compare(model, held, search.horizon)
-    values = search.fitter.deviations(found.model)
+    values = search.fitter.deviations(found.model, CORRELATED)
     added = tuple(
         _addition(step, found.model, values, waterfall[k + 1][1], waterfall[k + 2][1])
         for k, step in enumerate(found.steps)

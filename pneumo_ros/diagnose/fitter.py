@@ -6,6 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.basefit import ITERATIONS, SMALL_SHARE, Fitted, Known, base_fit, fit_base, strain
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, forms, kinds, profile
 from pneumo_ros.diagnose.evidence import Evidence
@@ -14,6 +15,7 @@ from pneumo_ros.diagnose.hypothesis import (
     BaseFit,
     Hypothesis,
     everything,
+    jackknife,
     log_likelihood,
     missing,
     own_weights,
@@ -233,10 +235,11 @@ class Fitter:
         """The model on training evidence."""
         return base_fit(self.train, self.whole, model, self.known(model))
 
-    def deviations(self, model: Model) -> dict[str, float]:
+    def deviations(self, model: Model, lengths: Sequence[float] = ()) -> dict[str, float]:
         """Cluster-robust standard deviation of every free parameter of `model`, infinite where not determined.
 
-        A parameter at the end of its range counts as known for the deviations of the others.
+        At least those of errors that are correlated within blocks of further `lengths` [s]. A parameter at the end of
+        its range counts as known for the deviations of the others.
         """
         base = self.fit(model)
         w = own_weights(self.train, base.residual)
@@ -245,6 +248,9 @@ class Fitter:
         held = np.array(ends, dtype=bool)
         std = spread(A, e, self.train.block)
         std[~held] = spread(A[:, ~held], e, self.train.block)
+        for length in lengths:
+            longer = clusters(self.train.time, self.train.run, length)
+            std[~held] = np.maximum(std[~held], jackknife(A[:, ~held], e, longer))
         named = zip(base.names, std * base.prior, base.prior, strict=True)
         return {n: float(s) if s < 0.5 * p else float("inf") for n, s, p in named}
 
