@@ -126,7 +126,7 @@ def plugs(model: Model, seeds: range) -> None:
 def limits(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig]) -> None:
     """How often a limit is reached once the wiring is known."""
     refused = 0
-    farthest: dict[str, list[float]] = {"0": [], "1 and 2": []}
+    farthest: dict[str, dict[int, float]] = {"0": {}, "1 and 2": {}}  # by stage and seed
     for seed in seeds:
         rig = make(model, seed)
         job = Commissioning(model, rig.perform, sensors=())
@@ -138,12 +138,13 @@ def limits(model: Model, seeds: range, make: Callable[[Model, int], SimulatedRig
                 refused += 1
                 break
             finally:
-                farthest[stage].append(rig.farthest / (0.5 * model["piston.stroke"]))
+                farthest[stage][seed] = rig.farthest / (0.5 * model["piston.stroke"])
     for stage, ways in farthest.items():
-        reached = sum(one >= 1.0 for one in ways)
+        reached = [seed for seed, one in ways.items() if one >= 1.0]
         print(
-            f"stages {stage}: end of the stroke reached on {reached} of {len(ways)} rigs; "
-            f"farthest from mid stroke {100.0 * max(ways):.1f} % of half the stroke"
+            f"stages {stage}: end of the stroke reached on {len(reached)} of {len(ways)} rigs; "
+            f"farthest from mid stroke {100.0 * max(ways.values()):.1f} % of half the stroke"
+            + "".join(f"; rig {seed}" for seed in reached)
         )
     print(f"given up on {refused}")
 
