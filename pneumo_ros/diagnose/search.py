@@ -186,8 +186,13 @@ class Search:
         return Found(base, model, tuple(steps))
 
     def extended(self, model: Model, candidate: Candidate) -> tuple[Model, list[str]]:
-        """The refitted model with an effect added, without the effects whose size vanishes, and their names."""
-        new = self.refit(self.fitter.extended(model, candidate.hypothesis))
+        """The refitted model with an effect added, without the effects whose size vanishes, and their names.
+
+        An older effect that the new one contains is part of it from then on.
+        """
+        parts = [n for n in self.fitter.added(model) if n in model.library.find(candidate.name).contains]
+        new = self.fitter.extended(model, candidate.hypothesis)
+        new = self.refit(new.with_effects([n for n in new.effects if n not in parts]) if parts else new)
         for name in self.fitter.added(new):  # beside the new effect, older ones may explain as much by less
             new = self.fitter.simplest(new, name, self.horizon)
         std = self.fitter.deviations(new)
@@ -198,7 +203,7 @@ class Search:
         gone = [n for n in added if n in small or n in idle]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
-        return new, gone
+        return new, [*parts, *gone]
 
     def both(
         self, first: Step, alone: Model, gone: list[str], refused: Mapping[str, str], least: Mapping[str, float]

@@ -289,6 +289,19 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
 
 
+def test_an_older_effect_is_part_of_a_new_one_that_contains_it() -> None:
+    """16 N s/m both ways beside 4 and 50 N s/m: neither is determined, so that no deviation says that one is none."""
+    older, newer = "viscous_friction", "asymmetric_viscous_friction"
+    model = BASE.with_effects([*BASE.effects, older, LOAD])
+    search = extending(deviations=lambda model: dict.fromkeys(model.parameters, np.inf))
+    new, gone = Search.extended(search, model, candidate(newer))
+    assert gone == [older]
+    assert {*new.effects} - {*BASE.effects} == {newer, LOAD}
+    new, gone = Search.extended(search, BASE.with_effects([*BASE.effects, LOAD]), candidate(newer))
+    assert gone == []
+    assert {*new.effects} - {*BASE.effects} == {newer, LOAD}
+
+
 @pytest.mark.parametrize(("worth", "gone"), [(7.0, [LOAD]), (50.0, [])])
 def test_what_breakaways_ask_for_may_replace_an_older_effect(worth: float, gone: list[str]) -> None:
     size = "constant_load.load"
