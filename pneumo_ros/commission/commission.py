@@ -9,7 +9,7 @@ import numpy as np
 from pneumo_ros.commission import moves
 from pneumo_ros.commission.information import MINUTE, Knowledge, Told, knowledge, shrinkage, told
 from pneumo_ros.commission.performing import Perform, Performed
-from pneumo_ros.commission.safe import LIMIT, again, agreeing, fastest, may_be_tried_again, safe, unmoved
+from pneumo_ros.commission.safe import LIMIT, again, agreeing, may_be_tried_again, safe, unmoved
 from pneumo_ros.commission.settling import settled
 from pneumo_ros.commission.simulated import SimulatedRig
 from pneumo_ros.commission.slips import surely_static
@@ -19,7 +19,6 @@ from pneumo_ros.errors import DataError, NumericalError, UsageError
 from pneumo_ros.experiment.beside import counted_from
 from pneumo_ros.experiment.plumbing import plumbing
 from pneumo_ros.experiment.programme import Programme
-from pneumo_ros.experiment.room import dead_zone
 from pneumo_ros.experiment.whitened import Noise
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.closed import centred, closed_signal
@@ -169,25 +168,16 @@ class Commissioning:
     # --- stages 1 and 2 -----------------------------------------------------------------------------------------------
 
     def basics(self) -> None:
-        """Static and dynamic trials, and the first fit to them. Needs `wiring`.
-
-        Static ones from slow to moderate, and the machine is known anew after each voltage: friction at rest of a
-        multiple of that of the data sheet makes the piston jump, which a faster trial must be safe for.
-        """
-        if self._static is not None:
-            self._learn("static", self._static)
-        else:
-            for volts in moves.STATIC:
-                self._try("static", moves.static(self.known.model, [volts]))
-        self._try("dynamic", moves.dynamic(self.known.model))
-
-    def _try(self, name: str, programme: Programme) -> None:
-        """The programme, made safe, or a sentence why it is left out."""
-        made = self._safe(programme)
-        if made is None:
-            self.tell(f"{name}: left out, as even its smallest voltages may take the piston to an end stop")
-        else:
-            self._taken(name, made)
+        """Static and dynamic trials, and the first fit to them. Needs `wiring`."""
+        for name, make in (("static", moves.static), ("dynamic", moves.dynamic)):
+            if name == "static" and self._static is not None:
+                self._learn(name, self._static)
+                continue
+            programme = self._safe(make(self.known.model))
+            if programme is None:
+                self.tell(f"{name}: left out, as even its smallest voltages may take the piston to an end stop")
+                continue
+            self._taken(name, programme)
 
     # --- stage 3 ------------------------------------------------------------------------------------------------------
 
@@ -250,11 +240,7 @@ class Commissioning:
         return float(self.runs[-1].position[-1]) if self.runs else 0.0
 
     def _safe(self, programme: Programme) -> Programme | None:
-        """Safe for the machine as found and for the fastest of many that may be; else for a few of them."""
-        known, probing = self.known, self._probing(programme)
-        many = moves.drawn(known.model, known.deviations, WIDE, len(self.moves), known.correlation)
-        bold = safe(probing, [known.model, *fastest(probing, many, moves.DRAWN)], [self._stands()])
-        return bold or safe(probing, self._possible(), [self._stands()])
+        return safe(self._probing(programme), self._possible(), [self._stands()])
 
     def _probing(self, programme: Programme) -> Programme:
         """The programme with voltages at most three times as far beyond the dead zone as those that were sent.
@@ -263,10 +249,10 @@ class Commissioning:
         """
         if not self.runs:
             return programme
-        dead, closed = dead_zone(centred(self.known.model)), closed_signal(self.known.model)
-        sent = np.concatenate([run.input for run in self.runs]) - closed
-        tried = max(float(np.max(sent)) - dead[0], float(-np.min(sent)) - dead[1], moves.CREEP)
-        return moves.reaching(programme, dead, FARTHER * tried)
+        dead, closed = moves.narrowest([self.known.model]), closed_signal(self.known.model)
+        right = max(float(np.max(run.input)) for run in self.runs) - closed - dead[0]
+        left = closed - min(float(np.min(run.input)) for run in self.runs) - dead[1]
+        return moves.reaching(programme, dead, FARTHER * max(right, left, moves.CREEP))
 
     def _taken(self, name: str, programme: Programme) -> bool:
         """Whether the move was made; where the piston stays, it is left out from then on, and the others go on."""

@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 Dead = tuple[float, float]  # V from closed at which the valve begins to open, right and left, both positive
 
 SECONDS = 8.0  # of a move
-STATIC = (0.25, 0.5, 1.0)  # V beyond the dead zone: constant voltages of the first trials
 CREEP, SLOW, MODERATE, FAST, WIDE_OPEN = 0.015, 0.12, 0.5, 1.5, 6.2  # V beyond the dead zone
 DRAWN = 4  # machines, as they may be, that a move is rehearsed on
 VAGUE = 0.3  # of its value: a deviation beyond which a positive parameter is known by a factor only
@@ -29,11 +28,11 @@ REDRAWN = 20  # times that a machine which cannot be is drawn anew
 PATIENCE = 6.0  # s until a piston breaks away
 
 
-def static(model: Model, beyond: Sequence[float] = STATIC) -> Programme:
+def static(model: Model) -> Programme:
     """Constant voltages both ways, from slow to moderate: friction, dead zone and flow, before anything fast."""
     right, left = dead_zone(centred(model))
     made = constant_voltage.constant_voltage(
-        centred(model), [round(0.5 * (right + left) + volts, 3) for volts in beyond], 2.5
+        centred(model), [round(0.5 * (right + left) + beyond, 3) for beyond in (0.25, MODERATE, 1.0)], 2.5
     )
     trials = tuple(replace(trial, patience=PATIENCE) for trial in made.trials)
     return counted_from(replace(made, experiment="static", trials=trials), closed_signal(model))
@@ -128,18 +127,18 @@ def narrowest(machines: Sequence[Model]) -> Dead:
 
 def smaller(programme: Programme, dead: Dead, share: float) -> Programme:
     """The programme with `share` of each voltage beyond the dead zone."""
-    if share == 1.0:
-        return programme
-    trials = tuple(replace(one, voltage=_less(one.voltage, dead, share)) for one in programme.trials)
-    return replace(returning(programme, dead, share), trials=trials)
+    return programme if share == 1.0 else returning(_gentler(programme, dead, share), dead, share)
 
 
 def reaching(programme: Programme, dead: Dead, most: float) -> Programme:
     """The programme with voltages of its trials of at most `most` [V] beyond the dead zone."""
     beyond = max(one.voltage.largest for one in programme.trials) - min(dead)
-    if beyond <= most:
-        return programme
-    trials = tuple(replace(one, voltage=_less(one.voltage, dead, most / beyond)) for one in programme.trials)
+    return programme if beyond <= most else _gentler(programme, dead, most / beyond)
+
+
+def _gentler(programme: Programme, dead: Dead, share: float) -> Programme:
+    """The programme with `share` of the voltages of its trials beyond the dead zone, the way back as it is."""
+    trials = tuple(replace(one, voltage=_less(one.voltage, dead, share)) for one in programme.trials)
     return replace(programme, trials=trials)
 
 

@@ -17,7 +17,6 @@ MORE = (1.4, 1.2, 1.1)  # factors of the voltages that take a piston back that s
 ROOMS = (1.0, 0.6, 0.35)  # of the way between the limits, where less voltage does not help: a jump takes its way
 CLEAR = 0.95  # of the way to the end stop, beyond which no rehearsed piston may come
 LATE = 0.012  # s between two decisions of a rehearsal: a rig's commands come as late
-STEP = 0.6  # s of a step of the voltage, in which a piston is fastest
 LIMIT, STAYS = "end stop", "stays at"  # in the reason for which a programme was ended
 
 
@@ -35,26 +34,6 @@ def safe(programme: Programme, machines: Sequence[Model], starts: Sequence[float
         if _all_clear(tried, machines, starts, clear):
             return tried
     return None
-
-
-def fastest(programme: Programme, machines: Sequence[Model], count: int) -> list[Model]:
-    """The `count` of `machines` whose piston is fastest after a step to the programme's largest voltage, either way.
-
-    A valve may open by a multiple of what little voltages told, and a piston of high friction at rest jumps: what goes
-    too far is fast.
-    """
-    most = max(one.voltage.largest for one in programme.trials)
-
-    def speed(machine: Model) -> float:
-        volts = np.full(round(STEP / LATE), most)
-        begin = machine.state()
-        try:
-            ways = [machine.simulate(programme.closed + sign * volts, begin, sample_time=LATE) for sign in (1.0, -1.0)]
-        except NumericalError:  # no machine to plan for
-            return 0.0
-        return max(float(np.max(np.abs(way[:, machine.states.index("v")]))) for way in ways)
-
-    return sorted(machines, key=speed, reverse=True)[:count]
 
 
 def again(programme: Programme, reason: str, machines: Sequence[Model]) -> Programme | None:

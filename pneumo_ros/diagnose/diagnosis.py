@@ -11,9 +11,11 @@ from pneumo_ros.blas import on_one_thread
 from pneumo_ros.compare.compare import Comparison, compare
 from pneumo_ros.diagnose.between import moved_between
 from pneumo_ros.diagnose.candidate import Candidate
+from pneumo_ros.diagnose.evidence import BLOCK
 from pneumo_ros.diagnose.outcome import Addition, Outcome, Ranked, Unexplained, Value
 from pneumo_ros.diagnose.prediction import typical_error
 from pneumo_ros.diagnose.ruler import finest
+from pneumo_ros.diagnose.score import TIMES
 from pneumo_ros.diagnose.search import Progress, Search
 from pneumo_ros.diagnose.steps import Found, Step
 from pneumo_ros.diagnose.verdict import excess, failing, material, missed, significant, verdict
@@ -23,7 +25,8 @@ from pneumo_ros.runs.run import Run
 
 Array = NDArray[np.float64]
 
-CORRELATED = (1.6, 6.4)  # s: what no model has may correlate errors for longer than between neighbouring windows
+# s: correlation times that the score gives to what no model has, beyond those of neighbouring windows
+CORRELATED = tuple(time for time in TIMES if time > BLOCK)
 
 
 def diagnose(

@@ -298,10 +298,9 @@ def jackknife(A: Array, e: Array, block: NDArray[np.int64]) -> Array:
     is that of the fit without it.
     """
     bread = np.linalg.inv(A.T @ A + np.eye(A.shape[1])).astype(np.float64)
-    order = np.argsort(block, kind="stable")
-    parts = np.split(order, np.flatnonzero(np.diff(block[order])) + 1)
-    normal = np.stack([A[rows].T @ A[rows] for rows in parts])
-    sums = np.stack([e[rows] @ A[rows] for rows in parts])
+    sums, order = block_sums((A,), np.ones(len(e)), e, block), np.argsort(block, kind="stable")
+    parts = np.split(A[order], np.flatnonzero(np.diff(block[order])) + 1)
+    normal = np.stack([own.T @ own for own in parts])
     without = np.linalg.solve(np.eye(A.shape[1]) - normal @ bread, sums[:, :, None])[:, :, 0]
     return np.asarray(np.sqrt(np.diag(bread @ (without.T @ without + np.eye(A.shape[1])) @ bread)))
 

@@ -192,7 +192,7 @@ class Search:
         """
         parts = [n for n in self.fitter.added(model) if n in model.library.find(candidate.name).contains]
         new = self.fitter.extended(model, candidate.hypothesis)
-        new = self.refit(new.with_effects([n for n in new.effects if n not in parts]) if parts else new)
+        new = self.refit(new.with_effects([n for n in new.effects if n not in parts]))
         for name in self.fitter.added(new):  # beside the new effect, older ones may explain as much by less
             new = self.fitter.simplest(new, name, self.horizon)
         std = self.fitter.deviations(new)

@@ -10,7 +10,7 @@ from pneumo_ros.commission import moves
 from pneumo_ros.commission.commission import Commissioned, Commissioning
 from pneumo_ros.commission.information import Told, begun, knowledge, shrinkage
 from pneumo_ros.commission.performing import Performed
-from pneumo_ros.commission.safe import LATE, again, agreeing, fastest, safe, unmoved
+from pneumo_ros.commission.safe import LATE, again, agreeing, safe, unmoved
 from pneumo_ros.commission.simulated import SimulatedRig
 from pneumo_ros.commission.summary import errors, summary
 from pneumo_ros.commission.wiring import UnmovedError, find_wiring
@@ -232,26 +232,14 @@ def test_no_trial_goes_far_beyond_what_was_sent_before(sheet: Model) -> None:
     job = Commissioning(sheet, perform, sensors=())
     job.wiring()
     job.basics()
-    assert [name for name, _ in sent] == ["wiring", "static", "static", "static", "dynamic"]
-    assert all(len(move.recordings) == 2 for move in job.moves[1:])
+    assert [name for name, _ in sent] == ["wiring", "static", "dynamic"]
+    assert [len(move.recordings) for move in job.moves[1:]] == [6, 2]
     reached = 0.0
     for _, volts in sent[1:]:
         assert volts < 0.25
         assert reached == 0.0 or volts - 0.098 < 3.5 * reached
         reached = max(reached, volts - 0.098)
     assert rig.farthest < 0.095
-
-
-def test_the_fastest_machines_are_those_of_a_steep_valve(sheet: Model) -> None:
-    programme = moves.static(sheet)
-    steep, stiff, wide = (
-        sheet.with_parameters(values)
-        for values in (
-            {"arctan_flow.voltage_gain": 1.0}, {"lugre_friction.coulomb_friction": 60.0},
-            {"dead_zone.right_limit": 2.0, "dead_zone.left_limit": 2.0},
-        )
-    )  # fmt: skip
-    assert fastest(programme, [wide, stiff, sheet, steep], 2) == [steep, sheet]
 
 
 def test_larger_voltages_are_rehearsed_and_only_those_of_the_way_back_grow(sheet: Model) -> None:
@@ -331,8 +319,8 @@ def test_a_move_at_which_the_piston_stays_ends_no_commissioning(
     assert made == ["dynamic"]
     creep = next(one for one in moves.candidates(sheet, seed=1) if one.experiment == "creep")
     assert not job._taken("creep", creep)
-    assert [(move.name, move.seconds) for move in job.moves] == 3 * [("static", 7.0)] + [("creep", 7.0)]
-    assert sum("left out" in text for text in said) == 4
+    assert [(move.name, move.seconds) for move in job.moves] == [("static", 7.0), ("creep", 7.0)]
+    assert sum("left out" in text for text in said) == 2
     tried: list[str] = []
     monkeypatch.setattr("pneumo_ros.commission.commission.safe", lambda one, *_: tried.append(one.experiment))
     assert job.best_move()[1] is None
