@@ -19,13 +19,14 @@ from pneumo_ros.plant.reach import fades, read_by, written_by
 from pneumo_ros.plant.signals import SIGNALS
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, corrected_lanes, longest_step, parts_of, shifted
+from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 LANES_AT_ONCE = 16  # parameter vectors driven at once: more take memory, and no less time
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
-_SLIP = 6.0  # noise deviations of the position: a piston that moves less rests
+_NEAR = 4.0  # deviations of the smoothed position: a piston that keeps within so many of them rests
 
 
 @dataclass(frozen=True)
@@ -57,14 +58,17 @@ def noisier(frame: Frame) -> Frame:
 
 
 def resting(run: Run) -> NDArray[np.bool_]:
-    """Samples (n,) within stretches of 0.15 s or more in which the position stays within its noise."""
+    """Samples (n,) within stretches of 0.15 s or more in which the smoothed position stays within its own noise.
+
+    What is less than the noise of single samples is motion still: a play, or a load on a spring, takes all of its way.
+    """
     width = max(round(REST / run.sample_time), 2)
-    slip = _SLIP * run.noise["position_m"]
+    near = _NEAR * run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3)
     still = np.zeros(len(run), dtype=bool)
     if len(run) < width:
         return still
-    every = np.lib.stride_tricks.sliding_window_view(run.position, width)
-    quiet = np.flatnonzero(every.max(axis=1) - every.min(axis=1) < 2.0 * slip)
+    every = np.lib.stride_tricks.sliding_window_view(run.smoothed.motion[:, 0], width)
+    quiet = np.flatnonzero(every.max(axis=1) - every.min(axis=1) < 2.0 * near)
     marks = np.zeros(len(run) + 1)
     np.add.at(marks, quiet, 1.0)
     np.add.at(marks, quiet + width, -1.0)
