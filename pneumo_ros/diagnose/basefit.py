@@ -32,7 +32,8 @@ Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
 FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less, or gains 1 / 0.8 of it, asks for new ones
-LITTLE, SMALL_SHARE = 0.05, 1e-4  # log likelihood, and share of the loss: after a smaller gain there is no other round
+# Log likelihood (a parameter 0.3 deviations off its best) and share of the loss: after a smaller gain no other round
+LITTLE, SMALL_SHARE = 0.05, 1e-4
 SHARES = (0.3, 0.1)  # of a step, tried where all of it keeps less than it promised
 REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the residual of the previous solution
 
