@@ -91,6 +91,14 @@ def recorded(path: Path, topic: str) -> int:
         return 0
 
 
+def wait_recorded(path: Path, topic: str, count: int) -> None:
+    """Wait until `count` messages of `topic` are on the disk."""
+    deadline = time.monotonic() + PATIENCE
+    while recorded(path, topic) < count:
+        assert time.monotonic() < deadline, f"never {count} messages on {topic}"
+        time.sleep(0.1)
+
+
 def publisher(count: int, *more: str) -> list[str]:
     """Command of the program that publishes numbered messages."""
     return [str(Path(__file__).parent / "publishes.py"), "--count", str(count), *more]

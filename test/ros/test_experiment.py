@@ -5,6 +5,7 @@ import math
 import signal
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -31,9 +32,12 @@ def pneumo(*arguments: str) -> list[str]:
     return ["-m", "pneumo_ros", "experiment", *arguments]
 
 
-def experiment(folder: Path, namespace: str, **parameters: object) -> list[str]:
-    """Command of the node, with the programme of two trials that a scripted plant runs in seconds."""
-    (folder / "programme.yaml").write_text(programme_text(PROGRAMME), encoding="utf-8")
+def experiment(folder: Path, namespace: str, rounds: int = 1, **parameters: object) -> list[str]:
+    """Command of the node, with the programme of two trials that a scripted plant runs in seconds, `rounds` times."""
+    trials = tuple(
+        replace(trial, name=f"{trial.name}_{k}" if k else trial.name) for k in range(rounds) for trial in TRIALS
+    )
+    (folder / "programme.yaml").write_text(programme_text(replace(PROGRAMME, trials=trials)), encoding="utf-8")
     given = {"programme": folder / "programme.yaml", "output": folder / "out", "measurement_timeout": 1.0, **parameters}
     return node("experiment", "-r", f"__ns:=/{namespace}", **given)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ros.processes import PATIENCE, Running, node, recorded, running
+from ros.processes import Running, node, running, wait_recorded
 
 from pneumo_ros.records import Bag, BagTopic, BagWriter, encoding, read_recording, read_topics, write_recording
 
@@ -36,14 +36,6 @@ def payloads(path: Path) -> dict[str, list[bytes]]:
     return found
 
 
-def copied(folder: Path, topic: str, count: int) -> None:
-    """Wait until folder/copy contains `count` messages."""
-    deadline = time.monotonic() + PATIENCE
-    while recorded(folder / "copy", topic) < count:
-        assert time.monotonic() < deadline, f"never {count} messages on {topic}"
-        time.sleep(0.05)
-
-
 def replay(folder: Path, player: list[str], topics: list[str], end: int | None = None, count: int = 0) -> Running:
     """Run a player and a recorder of `topics` into folder/copy; the player ends by itself, or by signal `end` when
     `count` messages of the first topic have come.
@@ -53,7 +45,7 @@ def replay(folder: Path, player: list[str], topics: list[str], end: int | None =
         copying.wait_for("recording to")
         with running(*player, cwd=folder) as playing:
             if end is not None:
-                copied(folder, topics[0], count)
+                wait_recorded(folder / "copy", topics[0], count)
             assert playing.end(end) == 0, playing.said
         time.sleep(0.3)
         assert copying.end() == 0
@@ -95,7 +87,7 @@ def test_late_subscribers_get_the_description(tmp_path: Path, recording: Path) -
         with running(
             *node("recorder", output=tmp_path / "copy", topics=["/axis/description"]), cwd=tmp_path
         ) as copying:
-            copied(tmp_path, "/axis/description", 1)
+            wait_recorded(tmp_path / "copy", "/axis/description", 1)
             assert copying.end() == 0
         assert playing.end(signal.SIGTERM) == 0
     assert payloads(tmp_path / "copy") == {"/axis/description": payloads(recording)["/axis/description"]}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from records.making import assert_same, by_rosbags
-from ros.processes import PATIENCE, Running, node, publisher, recorded, running
+from ros.processes import Running, node, publisher, running, wait_recorded
 
 from pneumo_ros.records import Bag, read_recording, read_topics
 
@@ -53,10 +53,7 @@ def test_a_simulator_without_velocity_is_recorded_for_every_reader(tmp_path: Pat
     """rosbags refuses messages with extra bytes after an empty sequence."""
     simulator = node("simulator", publish_velocity=False)
     with running(*recorder(tmp_path), cwd=tmp_path) as recording, running(*simulator, cwd=tmp_path) as source:
-        deadline = time.monotonic() + PATIENCE
-        while recorded(tmp_path / "bag", "/joint_states") < 100:
-            assert time.monotonic() < deadline, recording.said + source.said
-            time.sleep(0.1)
+        wait_recorded(tmp_path / "bag", "/joint_states", 100)
         assert source.end(signal.SIGINT) == 0
         assert recording.end(signal.SIGINT) == 0
     heard = by_rosbags(tmp_path / "bag")["/joint_states"]

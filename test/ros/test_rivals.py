@@ -121,7 +121,8 @@ def test_a_simulator_takes_joint_states_of_others_for_a_warning_and_pressures_fo
 
 
 def test_an_experiment_goes_on_while_a_controller_refuses_to_start(tmp_path: Path) -> None:
-    with scripted_plant("tried") as plant, running(*experiment(tmp_path, "tried"), cwd=tmp_path) as process:
+    line = experiment(tmp_path, "tried", rounds=40)  # 150 s: a busy machine takes 6 s to start the controller
+    with scripted_plant("tried") as plant, running(*line, cwd=tmp_path) as process:
         in_trial(plant, process)
         with running(*command("controller", "tried"), cwd=tmp_path) as late:
             assert late.end(None) == 2, late.said
