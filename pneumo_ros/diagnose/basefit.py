@@ -31,7 +31,7 @@ from pneumo_ros.shooting.physical import physical
 Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
-FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less, or gains 1 / 0.8 of it, asks for new ones
+FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
 # Log likelihood (a parameter 0.3 deviations off its best) and share of the loss: after a smaller gain no other round
 LITTLE, SMALL_SHARE = 0.05, 1e-4
 SHARES = (0.3, 0.1)  # of a step, tried where all of it keeps less than it promised
@@ -135,23 +135,23 @@ def fit_base(
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
     model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
-    cost most. Rounds end when slopes promise no further gain that are new, or that kept what they promised in the
-    same noise; at the latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of them. A round pays
-    that gains more than `share` of the loss, and half a nat.
+    cost most. Rounds end when slopes promise no further gain that are new, or that erred by as little in all that they
+    promised, in the same noise; at the latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of
+    them. A round pays that gains more than `LITTLE`, and `share` of the loss.
     """
     descent = _Descent(evidence, known, model, share)
     for taken in range(1, iterations + 1):
         descent.renew()
-        kept = True
+        erred = 0.0
         for number in range(ROUNDS_EACH):
             gain, promised = descent.step()
             if descent.little(gain):
-                if number == 0 or (kept and descent.little(promised)):
+                if number == 0 or (descent.little(erred + promised) and descent.in_the_same_noise()):
                     return Fitted(descent.model, taken, True)
                 break
             if gain < FAITHFUL * promised:
                 break
-            kept = kept and gain <= promised / FAITHFUL and descent.in_the_same_noise()
+            erred += abs(gain - promised)
     return Fitted(descent.model, iterations, False)
 
 

@@ -26,7 +26,6 @@ from pneumo_ros.equations.slip import SLOWEST, SPEEDS, force_at_slip
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
 from pneumo_ros.runs.run import Run, check_position
-from pneumo_ros.runs.sensors import delays_of
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -217,17 +216,18 @@ class RunEvidence:
         result = np.empty((len(parameters), sum(int(f.usable.sum()) for f in self.families)))
         own = measured = self._along(model, noisier)
         along: int | None = None
-        late, loaded = self._late(model, parameters), adding_mass(model, parameters)
+        late, loaded = np.zeros(len(self.breakaways)), adding_mass(model, parameters)
         for variant in follow_each(model, frame, parameters, ranking):
             if variant.along != along:
                 along = variant.along
+                late = self._late(frame.states[:, 0], variant.frame[:, 0])
                 own = [
                     _weighed(self._measured(model, f, variant.frame), m)
                     for f, m in zip(self.families, measured, strict=True)
                 ]
             q = parameters[variant.index]
             parts = [
-                self._value(model, q, variant, m, late[variant.index], loaded[variant.index])[f.usable]
+                self._value(model, q, variant, m, late, loaded[variant.index])[f.usable]
                 for f, m in zip(self.families, own, strict=True)
             ]
             result[variant.index] = np.concatenate(parts)
@@ -252,14 +252,17 @@ class RunEvidence:
         chamber = next(one for one in model.chambers if one.equation == family.equation)
         return Balance(model, chamber).measured(family.window, states)
 
-    def _late(self, model: Model, parameters: Array) -> Index:
-        """By how many samples (variants,) the sensor gives the position late, and so shows each slip."""
-        if not self.breakaways:
-            return np.zeros(len(parameters), dtype=np.int64)
-        late = delays_of(model, parameters)[:, model.composition.sensed.index("y")]
-        return np.rint(late / self.run.sample_time).astype(np.int64)
+    def _late(self, measured: Array, corrected: Array) -> Array:
+        """By how many samples (breakaways,) each slip is late in the measured position (n,), and not in the corrected.
 
-    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: int, loaded: bool) -> Array:
+        A low-pass shows a slip after a sample or more, and before its time constant: it is read at the distance at
+        which a slip is certain.
+        """
+        each = list(zip(self.spans, self.direction, self.slip, strict=True))
+        shown, true = (np.array([_leaves(y[span], *own) for span, *own in each]) for y in (measured, corrected))
+        return np.asarray(shown - true)
+
+    def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: Array, loaded: bool) -> Array:
         if measured is None:
             return self._slips(model, q, variant, late)
         if isinstance(measured, MeasuredChamber):
@@ -277,16 +280,16 @@ class RunEvidence:
         model.kernel.observe(np.ascontiguousarray(states), q, held, self.run.time[rows], out)
         return {name: out[:, i] for i, name in enumerate(model.composition.observed)}
 
-    def _slips(self, model: Model, q: Array, variant: Followed, late: int) -> Array:
-        """Largest force that friction held before each slip, minus that of the model; shown `late` samples late."""
+    def _slips(self, model: Model, q: Array, variant: Followed, late: Array) -> Array:
+        """Largest force that friction held before each slip, minus that of the model; each is shown `late`."""
         if not self.breakaways:
             return np.empty(0)
         rows = np.concatenate(self.spans)
         seen = self._see(model, q, variant.states(rows), rows)
         load = np.split(seen["drive"] - seen["force"], np.cumsum([len(s) for s in self.spans])[:-1])
         largest = [
-            max(float((d * np.convolve(part, self.kernel, "same")[_earlier(inner, late)]).max()), 0.0)
-            for part, inner, d in zip(load, self.inner, self.direction, strict=True)
+            max(_largest(d * np.convolve(part, self.kernel, "same"), inner, before), 0.0)
+            for part, inner, d, before in zip(load, self.inner, self.direction, late, strict=True)
         ]
         return np.array(largest) - self._holds(model, q, variant)
 
@@ -305,9 +308,22 @@ class RunEvidence:
         return np.asarray(force - np.maximum(self.ramp, SLOWEST) * self.before)
 
 
-def _earlier(inner: slice, late: int) -> slice:
-    """The samples before a slip, which was `late` samples earlier; at least the first of them."""
-    return slice(inner.start, max(inner.stop - late, inner.start + 1))
+def _largest(force: Array, inner: slice, late: float) -> float:
+    """The largest of the samples `inner` before a slip that was `late` samples earlier; at least the first of them."""
+    end = min(max(inner.stop - 1 - late, float(inner.start)), float(len(force) - 1))
+    last = int(end)
+    at_end = force[last] + (end - last) * (force[min(last + 1, len(force) - 1)] - force[last])
+    return max(float(force[inner.start : last + 1].max()), float(at_end))
+
+
+def _leaves(y: Array, direction: float, slip: float) -> float:
+    """Sample from which on a position (n,) is farther than `slip` in a direction from where it was at first."""
+    away = direction * (y - np.mean(y[: len(y) // 8])) - slip
+    inside = np.flatnonzero(away < 0.0)
+    last = int(inside[-1]) if len(inside) else 0
+    if last + 1 == len(y) or not len(inside):
+        return float(last)
+    return float(last - away[last] / (away[last + 1] - away[last]))
 
 
 def _weighed(corrected: Measured, measured: Measured) -> Measured:

@@ -191,7 +191,7 @@ def undetermined(model: Model, name: str, std: Mapping[str, float], within: floa
 
 def lag(h: Hypothesis, sample_time: float) -> float:
     """All delays of an effect together, in samples of `sample_time` [s]; infinite if it has none."""
-    delays = [h.values[c.name] for c in h.coordinates if c.role == "delay"]
+    delays = [h.values[c.name] for c in h.coordinates if c.role in ("delay", "low-pass")]
     return sum(delays) / sample_time if delays else np.inf
 
 

@@ -77,13 +77,13 @@ def corrected_lanes(
 ) -> Array:  # fmt: skip
     """Frame states without sensor effects (lanes, n, frame); `drive` follows the states of `names` along them.
 
-    Readings that are late are first taken at their own times, and others inverted as if the sensors' own states were at
-    rest, which is all that a gain needs. Then the readings r(x) are inverted by at most two steps of the fixed point
-    x = x_measured - (r(x) - x); each step drives the sensors' own states again. The velocity is
-    corrected by the derivative of the correction of position. Each lane stops when its correction changes by no more
-    than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane whose readings are not finite has no
-    states: as measured, it would be that of a machine whose sensors are right. parameters (lanes, parameters), or None
-    for one lane with the model's own, which is returned as it is.
+    Readings that are late are first taken at their own times, what a low-pass smoothed is made good, and others are
+    inverted as if the sensors' own states were at rest, which is all that a gain needs. Then the readings r(x) are
+    inverted by at most two steps of the fixed point x = x_measured - (r(x) - x); each step drives the sensors' own
+    states again. The velocity is corrected by the derivative of the correction of position. Each lane stops when its
+    correction changes by no more than `enough` [m, Pa, Pa], so its result does not depend on other lanes. A lane whose
+    readings are not finite has no states: as measured, it would be that of a machine whose sensors are right.
+    parameters (lanes, parameters), or None for one lane with the model's own, which is returned as it is.
     """
     count = 1 if parameters is None else len(parameters)
     moving, before = np.arange(count), advanced(model, frame, parameters, run)
@@ -110,16 +110,18 @@ def corrected_lanes(
 def advanced(model: Model, frame: Array, parameters: Array | None, run: Run) -> Array:
     """What to add to the readings (lanes, n, sensed) so that those that a sensor gives late stand at their own times.
 
-    After the end a reading goes on as it did last. A fixed point alone would amplify the noise of what is faster than
-    1 / delay (rad/s) by a factor of eight.
+    After the end a reading goes on as it did last. What a low-pass of time constant T reads as r was r + T r'. A fixed
+    point alone would amplify the noise of what is faster than 1 / delay (rad/s) by a factor of eight, and two steps of
+    it leave a third of what passes a low-pass at 1 / T.
     """
-    delays = delays_of(model, model.values[None] if parameters is None else parameters)
+    own = model.values[None] if parameters is None else parameters
+    delays, lags = (late_by(model, own, role) for role in ("delay", "low-pass"))
     found, time = np.zeros((len(delays), len(frame), delays.shape[1])), run.sample_time * np.arange(len(frame))
-    for lane, k in zip(*np.nonzero(delays > 0.0), strict=True):
-        reading = frame[:, model.states.index(model.composition.sensed[k])]
-        own = time + delays[lane, k]
+    for lane, k in zip(*np.nonzero((delays > 0.0) | (lags > 0.0)), strict=True):
+        reading, then = frame[:, model.states.index(model.composition.sensed[k])], time + delays[lane, k]
         rate = (reading[-1] - reading[-1 - LAST]) / (LAST * run.sample_time) if len(reading) > LAST else 0.0
-        found[lane, :, k] = np.interp(own, time, reading) + rate * np.maximum(own - time[-1], 0.0) - reading
+        early = np.interp(then, time, reading) + rate * np.maximum(then - time[-1], 0.0)
+        found[lane, :, k] = early + lags[lane, k] * smooth(early, run.sample_time, HALF_WIDTH, 3, 1) - reading
     return found
 
 
@@ -143,12 +145,12 @@ def at_rest(
     return found
 
 
-def delays_of(model: Model, parameters: Array) -> Array:
-    """By how much sensors give each state late [s] (lanes, sensed): the parameters of that role of their effects."""
+def late_by(model: Model, parameters: Array, role: str) -> Array:
+    """By how much sensors give each state late [s] (lanes, sensed): the sum of their effects' parameters of a role."""
     names, sensed = list(model.parameters), model.composition.sensed
     found = np.zeros((len(parameters), len(sensed)))
     for effect in model.composition.effects:
-        late = [names.index(f"{effect.name}.{key}") for key, one in effect.parameters.items() if one.role == "delay"]
+        late = [names.index(f"{effect.name}.{key}") for key, one in effect.parameters.items() if one.role == role]
         written = {SENSED.get(signal) for signal in written_by(effect)}
         found += parameters[:, late].sum(axis=1)[:, None] * np.array([state in written for state in sensed])
     return found

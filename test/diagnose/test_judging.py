@@ -170,14 +170,15 @@ class OwnLag(Effect):
     corner = Parameter(200.0, "rad/s", "corner frequency", low=5.0, high=1000.0, neutral=1000.0)
     zeta = Parameter(0.7, "1", "damping ratio", low=0.2, high=5.0, role="damping")
     dead_time = Parameter(5e-3, "s", "delay", low=0.0, high=0.2, neutral=0.0, role="delay")
+    filter_time = Parameter(0.0, "s", "time constant", low=0.0, high=0.2, neutral=0.0, usual=5e-3, role="low-pass")
 
 
 def test_an_effect_of_a_user_is_judged_by_roles_not_by_names() -> None:
     own = coordinates(OwnLag)
-    ringing, lagging = (np.array([own[0].u(400.0), own[1].u(zeta), 0.0]) for zeta in (0.7, 2.8))
+    ringing, lagging = (np.array([own[0].u(400.0), own[1].u(zeta), 0.0, 0.0]) for zeta in (0.7, 2.8))
     assert magnitude(own, lagging) == pytest.approx(4.0 * magnitude(own, ringing))
-    h = Hypothesis("own_lag", own, np.array([0.0, 0.0, 0.06]), np.empty(0), np.empty(0))
-    assert lag(h, sample_time=1e-3) == pytest.approx(0.3)
+    h = Hypothesis("own_lag", own, np.array([0.0, 0.0, 0.06, 0.1]), np.empty(0), np.empty(0))
+    assert lag(h, sample_time=1e-3) == pytest.approx(0.8)
     assert lag(replace(h, coordinates=own[:2], u=h.u[:2]), sample_time=1e-3) == np.inf
 
 
@@ -192,5 +193,5 @@ def test_half_a_period_of_a_resonance_in_samples(rate: float, samples: float) ->
 
 
 def test_an_unknown_role_is_refused() -> None:
-    with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, damping"):
+    with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, low-pass, damping"):
         Parameter(0.7, "1", "damping ratio", role="dampin")

@@ -19,7 +19,7 @@ class PositionSensorDelay(Effect):
     """
 
     delay = Parameter(5e-3, "s", "delay tau of the position signal", low=0.0, high=0.2, neutral=0.0, role="delay")
-    low_pass = Parameter(0.0, "s", "time constant T of its low-pass", low=0.0, high=0.1, neutral=0.0, role="delay")
+    low_pass = Parameter(0.0, "s", "time constant T of its low-pass", low=0.0, high=0.1, neutral=0.0, role="low-pass")
 
     behind = State("m", "lag e_1 of the signal by the first all-pass")
     v_behind = State("m/s", "rate of change of e_1")
