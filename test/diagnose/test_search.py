@@ -261,7 +261,7 @@ def test_candidates_are_compared_where_slopes_reach(offset: float, gain: float, 
 
 
 def extending(**given: Any) -> Search:
-    """A search that adds effects as they are, whose sizes are sure, unless something else is `given` of its fitter."""
+    """A search that adds effects as they are, sure and worth it, unless something else is `given` of its fitter."""
     search = Played([], {})
     search.horizon, search.paying = 1.0, set()
     usual: dict[str, Any] = {
@@ -270,6 +270,7 @@ def extending(**given: Any) -> Search:
         "added": lambda model: [name for name in model.effects if name not in BASE.effects],
         "simplest": lambda model, name, horizon: model,
         "deviations": lambda model: dict.fromkeys(model.parameters, 1e-9),
+        "gain": lambda new, old: 50.0,
     }
     search.fitter = cast(Fitter, SimpleNamespace(**(usual | given)))
     return search
@@ -316,9 +317,11 @@ def test_what_breakaways_ask_for_may_replace_an_older_effect(worth: float, gone:
 
 
 @pytest.mark.parametrize(
-    ("deviation", "worth", "gone"), [(0.6, 7.0, True), (0.6, 50.0, False), (0.3, 7.0, True), (0.2, 7.0, False)]
+    ("deviation", "worth", "gone"),
+    [(0.6, 7.0, True), (0.6, 50.0, False), (0.2, 50.0, False), (0.2, 7.0, True), (0.01, -689.0, True)],
 )
 def test_an_effect_that_is_worth_nothing_once_refitted_is_not_added(deviation: float, worth: float, gone: bool) -> None:
+    """However sure its size is: slopes promised 332 nats of a load that lost 689 beside a low-pass."""
     size = "constant_load.load"
 
     def extended(model: Model, h: Hypothesis) -> Model:
