@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict
 from pneumo_ros.compare.wording import SIGNALS, amount, percent
+from pneumo_ros.diagnose.follow import read_from
 from pneumo_ros.diagnose.measures import MATERIAL_FORCE
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
 from pneumo_ros.diagnose.prediction import WORSE, typical_error, usual_errors
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.effect import Effect
 
 Array = NDArray[np.float64]
 
@@ -91,11 +93,17 @@ def failing(before: Comparison, after: Comparison, added: Sequence[Addition], mo
     """
     found = [n for n in before.equations if fails(n, before, before) or (added and _mended(n, before, after))]
     for addition in added:
-        module = model.library.find(addition.effect).__module__
-        for part in ("valve", "sensor"):
-            if f".{part}." in module and part not in found:
-                found.append(part)
+        kind = model.library.find(addition.effect)
+        part = next((one for one in ("valve", "sensor") if f".{one}." in kind.__module__), "")
+        if part and part not in found and (part == "valve" or _reads_wrong(kind, addition)):
+            found.append(part)
     return tuple(found)
+
+
+def _reads_wrong(kind: type[Effect], addition: Addition) -> bool:
+    """Whether an added effect makes a sensor differ from its state: a play before the load does not."""
+    own = read_from(kind)
+    return any(value.value != kind.parameters[key].neutral for key, value in addition.parameters.items() if key in own)
 
 
 def fails(name: str, before: Comparison, after: Comparison) -> bool:

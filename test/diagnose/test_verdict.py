@@ -10,7 +10,7 @@ import pytest
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict, SignalError
 from pneumo_ros.diagnose.diagnosis import remains
-from pneumo_ros.diagnose.outcome import Addition
+from pneumo_ros.diagnose.outcome import Addition, Value
 from pneumo_ros.diagnose.score import Score
 from pneumo_ros.diagnose.verdict import driving, failing, material, missed, rises, verdict
 from pneumo_ros.plant import load_model
@@ -102,6 +102,19 @@ def test_no_verdict_is_good_while_an_equation_or_a_prediction_fails(
     assert failing(before, after, added, MODEL) == fails
     if not added:
         assert (word == "adequate") is not (bool(fails) or typical == FAR)
+
+
+@pytest.mark.parametrize(
+    ("values", "parts"),
+    [
+        ({"gap": 2e-4, "load_share": 0.0, "load_gap": 4e-4}, ("momentum", "sensor")),
+        ({"gap": 0.0, "load_share": 0.3, "load_gap": 4e-4}, ("momentum",)),
+    ],
+)
+def test_a_play_acts_in_the_sensor_only_where_it_lies_before_it(values: dict[str, float], parts: tuple[str]) -> None:
+    before, after = compared(**RUBBING), compared(**QUIET)
+    play = replace(VISCOUS, effect="backlash", parameters={k: Value(v, 0.1 * v, "m") for k, v in values.items()})
+    assert failing(before, after, [play], MODEL) == parts
 
 
 def test_an_equation_with_too_few_windows_for_bins_fails_nonetheless() -> None:
