@@ -31,10 +31,9 @@ from pneumo_ros.shooting.physical import physical
 Array = NDArray[np.float64]
 
 ITERATIONS, ROUNDS_EACH = 40, 12  # sets of slopes, and rounds with each of them
-FAITHFUL = 0.8  # of the gain that slopes promise: a round that keeps less asks for new ones
 # Log likelihood (a parameter 0.3 deviations off its best) and share of the loss: after a smaller gain no other round
 LITTLE, SMALL_SHARE = 0.05, 1e-4
-SHARES = (0.3, 0.1)  # of a step, tried where all of it keeps less than it promised
+SHARES = (0.3, 0.1)  # of a step, tried where all of it does not gain
 REWEIGHTED = 3  # least-squares solutions of a round, each weighted by the residual of the previous solution
 
 
@@ -134,10 +133,11 @@ def fit_base(
     """Gauss-Newton from `model`, within the priors of its parameters.
 
     Every round is judged by one objective, `_objective`: a step is taken only if it raises the log likelihood, so no
-    model is visited twice. Slopes are renewed only when the old slopes give no further gain: they hardly change, and
-    cost most. Rounds end when slopes promise no further gain that are new, or that erred by as little in all that they
-    promised, in the same noise; at the latest after `iterations` sets of slopes and `ROUNDS_EACH` rounds for each of
-    them. A round pays that gains more than `LITTLE`, and `share` of the loss.
+    model is visited twice. Slopes are renewed where a round gains less than they promised, and where they promise no
+    further gain: they hardly change, and cost most. Rounds end when slopes promise no further gain that are new, or
+    that erred by as little in all that they promised, in the same noise; at the latest after `iterations` sets of
+    slopes and `ROUNDS_EACH` rounds for each of them. A round pays that gains more than `LITTLE`, and `share` of the
+    loss.
     """
     descent = _Descent(evidence, known, model, share)
     for taken in range(1, iterations + 1):
@@ -149,7 +149,7 @@ def fit_base(
                 if number == 0 or (descent.little(erred + promised) and descent.in_the_same_noise()):
                     return Fitted(descent.model, taken, True)
                 break
-            if gain < FAITHFUL * promised:
+            if not descent.little(promised - gain):
                 break
             erred += abs(gain - promised)
     return Fitted(descent.model, iterations, False)
@@ -190,7 +190,7 @@ class _Descent:
         if self.little(promised):
             return 0.0, promised
         tried = self._tried(theta, x, (1.0,))
-        if not tried[0][0] - before >= FAITHFUL * promised:
+        if not tried[0][0] > before:
             tried += self._tried(theta, x, SHARES)
         objective, variant, residual = max(tried, key=lambda one: one[0])
         gain = objective - before
