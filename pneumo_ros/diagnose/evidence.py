@@ -20,7 +20,7 @@ from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier
-from pneumo_ros.equations.breakaway import REST
+from pneumo_ros.equations.breakaway import REST, UNSEEN
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.equations.slip import SLOWEST, SPEEDS, force_at_slip
 from pneumo_ros.plant import Model
@@ -188,7 +188,7 @@ class RunEvidence:
             slice(max(b.index - width, 0) - span[0], end - span[0] + 1)
             for b, end, span in zip(self.breakaways, ends, self.spans, strict=True)
         ]
-        least = max(round(0.02 / run.sample_time), 1)
+        least = max(round(UNSEEN / run.sample_time), 1)
         rested = [max(min(end, b.index - least), 0) for b, end in zip(self.breakaways, ends, strict=True)]
         self.rested = np.array(rested, dtype=np.int64)
         self.direction, self.ramp, self.slip = (
@@ -258,9 +258,12 @@ class RunEvidence:
         A low-pass shows a slip after a sample or more, and before its time constant: it is read at the distance at
         which a slip is certain.
         """
-        each = list(zip(self.spans, self.direction, self.slip, strict=True))
-        shown, true = (np.array([_leaves(y[span], *own) for span, *own in each]) for y in (measured, corrected))
-        return np.asarray(shown - true)
+        at_first, found = max(round(UNSEEN / self.run.sample_time), 1), list[float]()
+        for span, inner, direction, slip in zip(self.spans, self.inner, self.direction, self.slip, strict=True):
+            rows = span[inner.start :]  # it rests in the first of them
+            shown, true = (_departs(y[rows], direction, slip, at_first) for y in (measured, corrected))
+            found.append(shown - true)
+        return np.array(found)
 
     def _value(self, model: Model, q: Array, variant: Followed, measured: Measured, late: Array, loaded: bool) -> Array:
         if measured is None:
@@ -310,15 +313,14 @@ class RunEvidence:
 
 def _largest(force: Array, inner: slice, late: float) -> float:
     """The largest of the samples `inner` before a slip that was `late` samples earlier; at least the first of them."""
-    end = min(max(inner.stop - 1 - late, float(inner.start)), float(len(force) - 1))
-    last = int(end)
-    at_end = force[last] + (end - last) * (force[min(last + 1, len(force) - 1)] - force[last])
-    return max(float(force[inner.start : last + 1].max()), float(at_end))
+    end = max(inner.stop - 1 - late, inner.start)
+    at_end = np.interp(end, np.arange(len(force)), force)
+    return max(float(force[inner.start : int(end) + 1].max()), float(at_end))
 
 
-def _leaves(y: Array, direction: float, slip: float) -> float:
-    """Sample from which on a position (n,) is farther than `slip` in a direction from where it was at first."""
-    away = direction * (y - np.mean(y[: len(y) // 8])) - slip
+def _departs(y: Array, direction: float, slip: float, at_first: int) -> float:
+    """Sample from which on a position (n,) is farther than `slip` in a direction from where it was `at_first`."""
+    away = direction * (y - np.mean(y[:at_first])) - slip
     inside = np.flatnonzero(away < 0.0)
     last = int(inside[-1]) if len(inside) else 0
     if last + 1 == len(y) or not len(inside):

@@ -14,6 +14,7 @@ from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis
 from pneumo_ros.diagnose.measures import acting, explained, gains
 from pneumo_ros.diagnose.score import AS_MUCH, MARGIN, Best, Score, Scoring, log_prior, moved, occam, surprise
 from pneumo_ros.plant import Model
+from pneumo_ros.plant.effect import LATE
 
 Array = NDArray[np.float64]
 
@@ -191,7 +192,7 @@ def undetermined(model: Model, name: str, std: Mapping[str, float], within: floa
 
 def lag(h: Hypothesis, sample_time: float) -> float:
     """All delays of an effect together, in samples of `sample_time` [s]; infinite if it has none."""
-    delays = [h.values[c.name] for c in h.coordinates if c.role in ("delay", "low-pass")]
+    delays = [h.values[c.name] for c in h.coordinates if c.role in LATE]
     return sum(delays) / sample_time if delays else np.inf
 
 

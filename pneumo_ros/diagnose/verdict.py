@@ -94,13 +94,12 @@ def failing(before: Comparison, after: Comparison, added: Sequence[Addition], mo
     found = [n for n in before.equations if fails(n, before, before) or (added and _mended(n, before, after))]
     for addition in added:
         kind = model.library.find(addition.effect)
-        part = next((one for one in ("valve", "sensor") if f".{one}." in kind.__module__), "")
-        if part and part not in found and (part == "valve" or _reads_wrong(kind, addition)):
-            found.append(part)
+        acts = {"valve": ".valve." in kind.__module__, "sensor": _misreads(kind, addition)}
+        found += [part for part, own in acts.items() if own and part not in found]
     return tuple(found)
 
 
-def _reads_wrong(kind: type[Effect], addition: Addition) -> bool:
+def _misreads(kind: type[Effect], addition: Addition) -> bool:
     """Whether an added effect makes a sensor differ from its state: a play before the load does not."""
     own = read_from(kind)
     return any(value.value != kind.parameters[key].neutral for key, value in addition.parameters.items() if key in own)

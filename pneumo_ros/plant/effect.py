@@ -36,7 +36,8 @@ __all__ = [
 ]  # fmt: skip
 
 
-ROLES = ("", "delay", "low-pass", "damping")  # of a parameter, where its unit and neutral value do not say what it does
+LATE = ("delay", "low-pass")  # roles of times by which a signal is late
+ROLES = ("", *LATE, "damping")  # of a parameter, where its unit and neutral value do not say what it does
 
 
 @dataclass(frozen=True)

@@ -179,7 +179,7 @@ class Scripted:
 def test_slopes_that_erred_are_made_again_before_a_fit_ends(
     gain: float, taken: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An error of 1492 of 18709 nats hid 21 nats that breakaways were off: friction was asymmetric, and no load."""
+    """Slopes that erred by 1492 of 18709 nats saw nothing of 21 nats by which breakaways were too far off."""
     descent = Scripted([(gain, 18_709.0), (0.0, 0.06)], [(20.0, 20.1), (0.0, 0.0)])
     monkeypatch.setattr(sys.modules[fit_base.__module__], "_Descent", descent)
     fitted = fit_base(cast(Any, None), descent.model, cast(Any, None))
