@@ -20,11 +20,12 @@ from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
 from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier
-from pneumo_ros.equations.breakaway import REST, UNSEEN
+from pneumo_ros.equations.breakaway import UNSEEN
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.equations.slip import SLOWEST, SPEEDS, force_at_slip
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
+from pneumo_ros.runs.rests import REST
 from pneumo_ros.runs.run import Run, check_position
 
 Array = NDArray[np.float64]
@@ -258,10 +259,13 @@ class RunEvidence:
         A low-pass shows a slip after a sample or more, and before its time constant: it is read at the distance at
         which a slip is certain.
         """
-        at_first, found = max(round(UNSEEN / self.run.sample_time), 1), list[float]()
-        for span, inner, direction, slip in zip(self.spans, self.inner, self.direction, self.slip, strict=True):
-            rows = span[inner.start :]  # it rests in the first of them
-            shown, true = (_departs(y[rows], direction, slip, at_first) for y in (measured, corrected))
+        width, found = max(round(REST / self.run.sample_time), 2), list[float]()
+        for b, span, inner in zip(self.breakaways, self.spans, self.inner, strict=True):
+            first = b.index - round(b.rest / self.run.sample_time)
+            rested, rows = slice(first, first + width), span[inner.start :]
+            shown, true = (
+                _departs(y[rows], float(np.median(y[rested])), b.direction, b.slip) for y in (measured, corrected)
+            )
             found.append(shown - true)
         return np.array(found)
 
@@ -318,9 +322,9 @@ def _largest(force: Array, inner: slice, late: float) -> float:
     return max(float(force[inner.start : int(end) + 1].max()), float(at_end))
 
 
-def _departs(y: Array, direction: float, slip: float, at_first: int) -> float:
-    """Sample from which on a position (n,) is farther than `slip` in a direction from where it was `at_first`."""
-    away = direction * (y - np.mean(y[:at_first])) - slip
+def _departs(y: Array, rested: float, direction: float, slip: float) -> float:
+    """Sample from which on a position (n,) is farther than `slip` in a direction from where it `rested`."""
+    away = direction * (y - rested) - slip
     inside = np.flatnonzero(away < 0.0)
     last = int(inside[-1]) if len(inside) else 0
     if last + 1 == len(y) or not len(inside):

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pneumo_ros.equations.breakaway import REST
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
@@ -17,16 +16,15 @@ from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.lanes import acting_in
 from pneumo_ros.plant.reach import fades, read_by, written_by
 from pneumo_ros.plant.signals import SIGNALS
+from pneumo_ros.runs.rests import resting
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, corrected_lanes, longest_step, parts_of, shifted
-from pneumo_ros.runs.smooth import HALF_WIDTH, noise_gain
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 LANES_AT_ONCE = 16  # parameter vectors driven at once: more take memory, and no less time
 _SETTLED = (1e-9, 1e-2, 1e-2)  # m, Pa: far below the differences of variants that are compared
-_NEAR = 4.0  # deviations of the smoothed position: a piston that keeps within so many of them rests
 
 
 @dataclass(frozen=True)
@@ -55,24 +53,6 @@ def noisier(frame: Frame) -> Frame:
     states = measured_frame(replace(run, **again), frame.chambers)
     states[frame.states[:, 1] == 0.0, 1] = 0.0
     return Frame(run, frame.chambers, states)
-
-
-def resting(run: Run) -> NDArray[np.bool_]:
-    """Samples (n,) within stretches of 0.15 s or more in which the smoothed position stays within its own noise.
-
-    What is less than the noise of single samples is motion still: a play, or a load on a spring, takes all of its way.
-    """
-    width = max(round(REST / run.sample_time), 2)
-    near = _NEAR * run.noise["position_m"] * noise_gain(run.sample_time, HALF_WIDTH, 3)
-    still = np.zeros(len(run), dtype=bool)
-    if len(run) < width:
-        return still
-    every = np.lib.stride_tricks.sliding_window_view(run.smoothed.motion[:, 0], width)
-    quiet = np.flatnonzero(every.max(axis=1) - every.min(axis=1) < 2.0 * near)
-    marks = np.zeros(len(run) + 1)
-    np.add.at(marks, quiet, 1.0)
-    np.add.at(marks, quiet + width, -1.0)
-    return np.asarray(np.cumsum(marks)[:-1] > 0.0)
 
 
 def follow(model: Model, frame: Frame) -> tuple[Array, Array]:

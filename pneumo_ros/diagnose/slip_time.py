@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pneumo_ros.equations.breakaway import REST, Breakaway
+from pneumo_ros.equations.breakaway import Breakaway
 from pneumo_ros.equations.equations import moving_mass
 from pneumo_ros.equations.slip import SLOWEST
 from pneumo_ros.identify.static_map import sliding_friction
 from pneumo_ros.plant import Model
+from pneumo_ros.runs.rests import REST
 
 UNSURE = 0.1  # relative uncertainty of that time, from mass and friction known to a few per cent
 _STEP = 1e-4  # s of the integration

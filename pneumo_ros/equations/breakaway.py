@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from pneumo_ros.equations.guess import resting_states
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.noise import noise_level
+from pneumo_ros.runs.rests import REST
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.smooth import smooth
 
 Array = NDArray[np.float64]
 
 SCATTER, UNSEEN = 0.2, 0.02  # N between breakaways under a slow force; s until sliding is detected
-REST = 0.15  # s at rest before it counts as a breakaway
 _EDGE = 2e-3  # m from the end of the stroke
 _CHUNK = 2000  # samples searched at a time
 _SLIP = 5.0  # times the largest bristle deflection: certainly sliding

@@ -37,7 +37,7 @@ __all__ = [
 
 
 LATE = ("delay", "low-pass")  # roles of times by which a signal is late
-ROLES = ("", *LATE, "damping")  # of a parameter, where its unit and neutral value do not say what it does
+ROLES = ("", *LATE, "play", "damping")  # of a parameter, where its unit and neutral value do not say what it does
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,12 @@ class Parameter:
     """A physical constant of an effect: `default` value in `unit`, `meaning`, and the allowed values, `low` to `high`.
 
     `neutral` is the value at which the effect adds nothing, for the parameters that have one. `role` is "delay" for the
-    time by which a signal is late, "low-pass" for the time constant of a low-pass of first order, "damping" for the
-    damping ratio of a lag, and "" otherwise; UsageError for another role. `usual`: the usual size, where the default is
-    neutral; of a shape that may have either sign, as the place of something, the distance that matters. `shapes`: the
-    key of the parameter of the same effect without which this one does nothing; an effect with such a parameter has
-    several forms, one for each kind of its sizes, and a machine has one of them. `optional`: whether a machine file may
+    time by which a signal is late, "low-pass" for the time constant of a low-pass of first order, "play" for the width
+    of the play before a sensor, "damping" for the damping ratio of a lag, and "" otherwise; UsageError for another
+    role. `usual`: the usual size, where the default is neutral; of a shape that may have either sign, as the place of
+    something, the distance that matters. `shapes`: the key of the parameter of the same effect without which this one
+    does nothing; an effect with such a parameter has several forms, one for each kind of its sizes, and a machine has
+    one of them. `optional`: whether a machine file may
     leave the parameter out, as one may whose default is neutral. `chosen`: whoever builds or wires the machine chooses
     it, so that fits leave it alone. `span`: in a machine that turns, the width of the range that is allowed at every
     radius.

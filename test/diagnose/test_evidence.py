@@ -36,12 +36,19 @@ def test_they_are_the_residuals_of_the_equations(equation: str, width: int) -> N
     assert np.sqrt(np.mean(ours**2)) == pytest.approx(np.sqrt(np.mean(theirs**2)), rel=0.02)
 
 
-@pytest.mark.parametrize(("late", "smoothed"), [(8e-3, 0.0), (0.0, 14e-3), (0.0, 30e-3)])
-def test_a_slip_is_as_late_as_the_sensor_shows_it(late: float, smoothed: float) -> None:
+@pytest.mark.parametrize(
+    ("sensor", "values"),
+    [
+        ("position_sensor_delay", {"delay": 8e-3, "low_pass": 0.0}),
+        ("position_sensor_delay", {"delay": 0.0, "low_pass": 14e-3}),
+        ("position_sensor_delay", {"delay": 0.0, "low_pass": 30e-3}),
+        ("backlash", {"gap": 5e-4}),
+    ],
+)
+def test_a_slip_is_as_late_as_the_sensor_shows_it(sensor: str, values: dict[str, float]) -> None:
     """Counted as late by its time constant, a low-pass of 14 ms left breakaways that were 2.3 noises off."""
     base, _, run = own("pushes")
-    key = "position_sensor_delay"
-    model = base.with_effects([*base.effects, key], {f"{key}.delay": late, f"{key}.low_pass": smoothed})
+    model = base.with_effects([*base.effects, sensor], {f"{sensor}.{key}": value for key, value in values.items()})
     start = model.state(p_a=3e5, p_b=3.9e5)
     states = np.vstack([start, model.simulate(run.input, start, parts=PARTS)])
     noise = np.random.default_rng(2).normal(0.0, POSITION_NOISE, len(states))

@@ -31,7 +31,7 @@ class Backlash(Effect):
     push of the face that it touches: omega^2 times its depth in it, and 2 zeta omega times its rate.
     """
 
-    gap = Parameter(2e-4, "m", "width g of the play before the sensor", low=0.0, high=0.1, neutral=0.0)
+    gap = Parameter(2e-4, "m", "width g of the play before the sensor", low=0.0, high=0.1, neutral=0.0, role="play")
 
     load_share = Parameter(
         0.0, "1", "share of the moving mass behind a play", low=0.0, high=0.8, neutral=0.0, usual=0.5
