@@ -126,7 +126,7 @@ def test_it_is_said_honestly_whether_it_was_right(
     found: list[dict[str, Any]], right: bool, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     hidden = {"effect": "viscous_friction", "shape": "viscous_friction", "size": 180.0, "unit": "N s/m"}
-    result = _reveal({"effects": [hidden]}, {"added": found}, Console())
+    result = _reveal({"effects": [hidden]}, {"added": found}, None, Console())
     text = capsys.readouterr().out
     assert result["right"] is right
     assert said in text

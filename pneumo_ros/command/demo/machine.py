@@ -15,6 +15,7 @@ from pneumo_ros.errors import PneumoError
 
 INTERRUPTED = 130
 OTHER = "the simulator in {rig}, which shares no code with this package"
+DEFINED = " (by the definitions of that simulator, as half the width of a play)"
 OWN = """this package's own plant, as there is no other simulator here: except for the hidden effect, its equations are
 those of the model, which is easier than a real machine"""
 
@@ -39,7 +40,7 @@ def find_effect(folder: Path, seed: int, rig: Path | None, console: Console) -> 
     _call(["diagnose", machine / "train", "--holdout", machine / "holdout", *options], console, written.values())
     console.say("\n7. The truth, read only now\n")
     return _reveal(
-        json.loads(truth.read_text(encoding="utf-8")), json.loads(found.read_text(encoding="utf-8")), console
+        json.loads(truth.read_text(encoding="utf-8")), json.loads(found.read_text(encoding="utf-8")), rig, console
     )
 
 
@@ -61,11 +62,12 @@ def _call(arguments: Sequence[str | Path], console: Console, written: Iterable[P
         raise PneumoError(f"{program()} {words[0]} ended with exit code {code}")
 
 
-def _reveal(truth: dict[str, Any], diagnosis: dict[str, Any], console: Console) -> dict[str, Any]:
+def _reveal(truth: dict[str, Any], diagnosis: dict[str, Any], rig: Path | None, console: Console) -> dict[str, Any]:
     """Say what was hidden, what was found, and whether that is right."""
     hidden, added = truth["effects"], diagnosis["added"]
     judgement = judge([h["effect"] for h in hidden], [(a["effect"], a["indistinguishable_from"]) for a in added])
-    console.say("Hidden: " + ", ".join(f"{h['shape']}, {h['size']:.4g} {h['unit']}" for h in hidden))
+    sizes = ", ".join(f"{h['shape']}, {h['size']:.4g} {h['unit']}" for h in hidden)
+    console.say(f"Hidden: {sizes}{DEFINED if rig else ''}")
     console.say("Found:  " + (", ".join(_found(addition) for addition in added) or "nothing"))
     console.say(f"\n{judgement.sentence()}")
     return {
