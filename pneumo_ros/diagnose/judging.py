@@ -192,7 +192,16 @@ def undetermined(model: Model, name: str, std: Mapping[str, float], within: floa
 
 def lag(h: Hypothesis, sample_time: float) -> float:
     """All delays of an effect together, in samples of `sample_time` [s]; infinite if it has none."""
-    delays = [h.values[c.name] for c in h.coordinates if c.role in LATE]
+    return _lag(h.coordinates, h.values, sample_time)
+
+
+def lag_in(model: Model, name: str, sample_time: float) -> float:
+    """The same of an effect of the model, with the values that it has there."""
+    return _lag(coordinates(model.library.find(name)), model.parameters, sample_time)
+
+
+def _lag(own: Sequence[Coordinate], values: Mapping[str, float], sample_time: float) -> float:
+    delays = [values[c.name] for c in own if c.role in LATE]
     return sum(delays) / sample_time if delays else np.inf
 
 

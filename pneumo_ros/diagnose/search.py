@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pneumo_ros.blas import on_one_thread
 from pneumo_ros.diagnose.basefit import strain, unaided
-from pneumo_ros.diagnose.candidate import MATERIAL, Candidate
+from pneumo_ros.diagnose.candidate import MATERIAL, RESOLVED, Candidate
 from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, family_scales
@@ -20,6 +20,7 @@ from pneumo_ros.diagnose.judging import (
     by_score,
     freedom,
     judged,
+    lag_in,
     size_in,
     undetermined,
 )
@@ -200,7 +201,8 @@ class Search:
         idle = [n for n in added if self.idle(new, n, std, newest=candidate.name)]
         new = self.polish(new)
         small = [n for n in added if size_in(new, n) < MATERIAL and n not in self.paying]
-        gone = [n for n in added if n in small or n in idle]
+        short = [n for n in added if lag_in(new, n, self.train.runs[0].sample_time) < RESOLVED]
+        gone = [n for n in added if n in {*small, *short, *idle}]
         if gone:
             new = self.polish(self.fitter.refit(new.with_effects([n for n in new.effects if n not in gone])))
         return new, [*parts, *gone]

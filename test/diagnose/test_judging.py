@@ -193,5 +193,7 @@ def test_half_a_period_of_a_resonance_in_samples(rate: float, samples: float) ->
 
 
 def test_an_unknown_role_is_refused() -> None:
-    with pytest.raises(UsageError, match="role 'dampin' of a parameter is unknown; known are delay, low-pass, damping"):
+    with pytest.raises(
+        UsageError, match="role 'dampin' of a parameter is unknown; known are delay, low-pass, play, damping"
+    ):
         Parameter(0.7, "1", "damping ratio", role="dampin")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pneumo_ros.diagnose.candidate import Candidate
+from pneumo_ros.diagnose.evidence import Evidence
 from pneumo_ros.diagnose.fitter import Fitter
 from pneumo_ros.diagnose.hypothesis import Hypothesis
 from pneumo_ros.diagnose.score import Score
@@ -264,6 +265,7 @@ def extending(**given: Any) -> Search:
     """A search that adds effects as they are, sure and worth it, unless something else is `given` of its fitter."""
     search = Played([], {})
     search.horizon, search.paying = 1.0, set()
+    search.train = cast(Evidence, SimpleNamespace(runs=[SimpleNamespace(sample_time=1e-3)]))
     usual: dict[str, Any] = {
         "refit": lambda model: model,
         "extended": lambda model, h: model.with_effects([*model.effects, h.name]),
@@ -288,6 +290,15 @@ def test_an_older_effect_is_simplified_beside_a_new_one() -> None:
     search = extending(simplest=simplest)
     new, gone = Search.extended(search, late, candidate(LOAD))
     assert (new[delay], new[low_pass], gone) == (10.5e-3, 0.0, [])
+
+
+@pytest.mark.parametrize(("low_pass", "gone"), [(0.6e-3, ["position_sensor_delay"]), (1.6e-3, [])])
+def test_a_delay_that_a_refit_makes_shorter_than_a_sample_is_none(low_pass: float, gone: list[str]) -> None:
+    """1.6 ms as a candidate, where a play of 0.4 mm is true: refitted they were a low-pass of 0.6 ms, and stayed."""
+    values = {"position_sensor_delay.delay": 0.0, "position_sensor_delay.low_pass": low_pass}
+
+    search = extending(simplest=lambda model, name, horizon: model.with_parameters(values))
+    assert Search.extended(search, BASE, candidate("position_sensor_delay"))[1] == gone
 
 
 def test_an_older_effect_is_part_of_a_new_one_that_contains_it() -> None:
