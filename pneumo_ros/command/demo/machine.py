@@ -15,7 +15,7 @@ from pneumo_ros.errors import PneumoError
 
 INTERRUPTED = 130
 OTHER = "the simulator in {rig}, which shares no code with this package"
-DEFINED = " (by the definitions of that simulator, as half the width of a play)"
+DEFINED = " (as that simulator defines its sizes: of a play it states half the width)"
 OWN = """this package's own plant, as there is no other simulator here: except for the hidden effect, its equations are
 those of the model, which is easier than a real machine"""
 
