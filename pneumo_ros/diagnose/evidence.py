@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.binned import clusters
 from pneumo_ros.diagnose.coordinates import coordinates
 from pneumo_ros.diagnose.families import Family, families
-from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier, reads_wrong
+from pneumo_ros.diagnose.follow import Followed, Frame, adding_mass, follow, follow_each, frame_of, noisier
 from pneumo_ros.equations.breakaway import UNSEEN
 from pneumo_ros.equations.equations import Balance, MeasuredChamber, MeasuredMotion, added_mass, drive_along
 from pneumo_ros.equations.slip import SLOWEST, SPEEDS, force_at_slip
 from pneumo_ros.plant import Model
 from pneumo_ros.runs.local_polynomial import weights
+from pneumo_ros.runs.readings import reads_wrong
 from pneumo_ros.runs.rests import REST
 from pneumo_ros.runs.run import Run, check_position
 

@@ -1,6 +1,6 @@
 """The states a model claims along the measured motion, corrected for the model's sensor effects."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,13 +10,19 @@ from numpy.typing import NDArray
 from pneumo_ros.equations.guess import measured_frame
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import Chamber
-from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
-from pneumo_ros.plant.effect import Effect
 from pneumo_ros.plant.lanes import acting_in
 from pneumo_ros.plant.reach import fades, read_by, written_by
-from pneumo_ros.plant.signals import SIGNALS
-from pneumo_ros.runs.rests import resting
+from pneumo_ros.runs.readings import (
+    differing,
+    must_drive,
+    neutral_of,
+    others_of,
+    parameters_of,
+    read_from,
+    reads_wrong,
+    sensing,
+)
 from pneumo_ros.runs.run import Run
 from pneumo_ros.runs.sensors import QUICK, SHORT, at_rest, corrected_lanes, longest_step, parts_of, shifted
 
@@ -39,7 +45,7 @@ class Frame:
 def frame_of(run: Run, chambers: Sequence[Chamber]) -> Frame:
     """Measured position, smoothed velocity and pressures of these chambers; the velocity at rest is exactly 0."""
     states = measured_frame(run, chambers)
-    states[resting(run), 1] = 0.0
+    states[run.rests, 1] = 0.0
     return Frame(run, tuple(chambers), states)
 
 
@@ -94,7 +100,7 @@ def follow_each(model: Model, frame: Frame, parameters: Array, ranking: bool = F
     the ranking of candidates needs: a short sample is one part, with an error of 1 % of an effect.
     """
     parts = parts_of(model, 1 if ranking and frame.run.sample_time < SHORT else QUICK)
-    corrects, lags = sensing(model, parameters), sensing(model, parameters, with_states=True)
+    corrects, lags = sensing(model, parameters), must_drive(model, parameters)
     rest, plain = model.state(), unsensed(model, parameters)
     for rows in [*_some(np.flatnonzero(~lags)), *_some(np.flatnonzero(lags))]:
         late = bool(lags[rows[0]])
@@ -173,16 +179,6 @@ def _drive(model: Model, run: Run, given: Array, held: Array, parts: int) -> tup
     return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts)
 
 
-def reads_wrong(effect: type[Effect]) -> bool:
-    """Whether an effect makes a sensor differ from its state."""
-    return not written_by(effect).isdisjoint(SENSED)
-
-
-def read_from(effect: type[Effect]) -> frozenset[str]:
-    """What the readings of an effect's sensors depend on: not what else it does, as a play before the load."""
-    return readings_from(effect, SENSED)
-
-
 def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     """Parameter vectors (variants, parameters) in groups of equal sensors: the first of each group, and the groups.
 
@@ -191,24 +187,14 @@ def alike_sensors(model: Model, parameters: Array) -> tuple[Index, Index]:
     columns: list[int] = []
     keys = [name.partition(".")[2] for name in model.parameters]
     for effect in filter(reads_wrong, model.composition.effects):
-        reads, others = read_from(effect), _others(effect)
-        if not others <= _parameters(model):
+        reads, others = read_from(effect), others_of(effect)
+        if not others <= parameters_of(model):
             return np.arange(len(parameters)), np.arange(len(parameters))
         own = [f"{effect.name}.{key}" for key in effect.parameters if key in reads]
         columns += [k for k, name in enumerate(model.parameters) if name in own]
         columns += [k for k, key in enumerate(keys) if key in others]
     _, first, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)
     return first, np.ravel(group)
-
-
-def _others(effect: type[Effect]) -> frozenset[str]:
-    """What its readings depend on beside the frame's states, its own states and its own parameters."""
-    return read_from(effect) - {"y", "v", *SENSED, *SENSED.values(), *effect.states, *effect.parameters}
-
-
-def _parameters(model: Model) -> set[str]:
-    """Names by which effects read parameters, also those of others, without what is a signal or a state as well."""
-    return {name.partition(".")[2] for name in model.parameters} - {*SIGNALS, *model.states}
 
 
 def unsensed(model: Model, parameters: Array) -> Array:
@@ -219,7 +205,7 @@ def unsensed(model: Model, parameters: Array) -> Array:
     """
     names, effects = list(model.parameters), model.composition.effects
     watching = any(not reads_wrong(effect) and read_by(effect) & SENSED.keys() for effect in effects)
-    neutral = [_neutral(effect, read_from(effect)) for effect in filter(reads_wrong, effects)]
+    neutral = [neutral_of(effect, read_from(effect)) for effect in filter(reads_wrong, effects)]
     if watching or not neutral or not all(neutral):
         return parameters
     found = np.array(parameters)
@@ -228,35 +214,9 @@ def unsensed(model: Model, parameters: Array) -> Array:
     return found
 
 
-def _neutral(effect: type[Effect], keys: Collection[str]) -> dict[str, float]:
-    """By dotted name, the neutral values of those of an effect's parameters that are among `keys` and have one."""
-    own = [(key, p.neutral) for key, p in effect.parameters.items() if key in keys]
-    return {f"{effect.name}.{key}": neutral for key, neutral in own if neutral is not None}
-
-
-def _differs(model: Model, parameters: Array, values: Mapping[str, float]) -> NDArray[np.bool_]:
-    """Which parameter vectors (variants, parameters) have another value of any of `values`; all, if these are none."""
-    names = list(model.parameters)
-    found = [parameters[:, names.index(name)] != value for name, value in values.items()]
-    return np.any(found, axis=0) if found else np.ones(len(parameters), dtype=bool)
-
-
 def adding_mass(model: Model, parameters: Array) -> NDArray[np.bool_]:
     """Parameter vectors (variants, parameters) by which an effect of the model may add to the moving mass."""
     found = np.zeros(len(parameters), dtype=bool)
     for effect in (one for one in model.composition.effects if "added_mass" in written_by(one)):
-        found |= _differs(model, parameters, _neutral(effect, effect.parameters) if fades(effect) else {})
-    return found
-
-
-def sensing(model: Model, parameters: Array, with_states: bool = False) -> NDArray[np.bool_]:
-    """Which parameter vectors (variants, parameters) make any sensor of the model differ from its state.
-
-    `with_states`: of sensors whose readings depend on more than parameters and the frame's states, as a late one.
-    """
-    found = np.zeros(len(parameters), dtype=bool)
-    for effect in filter(reads_wrong, model.composition.effects):
-        own = read_from(effect)
-        if not with_states or own & effect.states.keys() or not _others(effect) <= _parameters(model):
-            found |= _differs(model, parameters, _neutral(effect, own))
+        found |= differing(model, parameters, neutral_of(effect, effect.parameters) if fades(effect) else {})
     return found

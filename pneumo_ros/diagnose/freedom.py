@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from pneumo_ros.diagnose.coordinates import Coordinate, coordinates, profile
 from pneumo_ros.diagnose.evidence import Evidence, RunEvidence
-from pneumo_ros.diagnose.follow import reads_wrong
 from pneumo_ros.diagnose.hypothesis import BaseFit, Hypothesis, vectors
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.actuator import SIDES
 from pneumo_ros.plant.reach import owners_read
 from pneumo_ros.plant.signals import DRIVE
+from pneumo_ros.runs.readings import reads_wrong
 
 Array = NDArray[np.float64]
 

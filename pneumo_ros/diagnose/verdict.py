@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from pneumo_ros.compare.compare import Comparison
 from pneumo_ros.compare.verdicts import EquationVerdict
 from pneumo_ros.compare.wording import SIGNALS, amount, percent
-from pneumo_ros.diagnose.follow import read_from
 from pneumo_ros.diagnose.measures import MATERIAL_FORCE
 from pneumo_ros.diagnose.outcome import ADEQUATE, FOUND, UNKNOWN, Addition, Unexplained
 from pneumo_ros.diagnose.prediction import WORSE, typical_error, usual_errors
 from pneumo_ros.plant import Model
 from pneumo_ros.plant.effect import Effect
+from pneumo_ros.runs.readings import read_from
 
 Array = NDArray[np.float64]
 

@@ -50,10 +50,9 @@ class Parameter:
     role. `usual`: the usual size, where the default is neutral; of a shape that may have either sign, as the place of
     something, the distance that matters. `shapes`: the key of the parameter of the same effect without which this one
     does nothing; an effect with such a parameter has several forms, one for each kind of its sizes, and a machine has
-    one of them. `optional`: whether a machine file may
-    leave the parameter out, as one may whose default is neutral. `chosen`: whoever builds or wires the machine chooses
-    it, so that fits leave it alone. `span`: in a machine that turns, the width of the range that is allowed at every
-    radius.
+    one of them. `optional`: whether a machine file may leave the parameter out, as one may whose default is neutral.
+    `chosen`: whoever builds or wires the machine chooses it, so that fits leave it alone. `span`: in a machine that
+    turns, the width of the range that is allowed at every radius.
     """
 
     default: float

@@ -20,7 +20,7 @@ _FEWEST, _LONG = 6, 0.2  # samples and s of that way
 class Crossing:
     """A sensor comes to rest at `begin`, and at `end` (samples) is taken along in a `direction` at `speed`."""
 
-    begin: float
+    begin: int
     end: float
     direction: float
     speed: float  # [unit of the reading / sample], of the piston that takes up its play; infinite: not known
@@ -62,7 +62,7 @@ def play_of(found: list[Crossing], width: float, bent: Array, most: float) -> Ar
     half, side, last = 0.5 * width, 0.0, 0
     play = np.zeros(len(bent))
     for one in found:
-        first, end = max(math.ceil(one.begin), last), min(math.ceil(one.end), len(bent))
+        first, end = max(one.begin, last), min(math.ceil(one.end), len(bent))
         play[last:first] = side
         rows, after = np.arange(first, end), half * one.direction
         stopped = most * np.sign(side) if side else bent[min(first, len(bent) - 1)]

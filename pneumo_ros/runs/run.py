@@ -16,6 +16,7 @@ from pneumo_ros.plant.signals import DRIVE
 from pneumo_ros.records import Recording
 from pneumo_ros.records.unfit import check_use
 from pneumo_ros.runs.noise import noise_level
+from pneumo_ros.runs.rests import resting
 from pneumo_ros.runs.smooth import Smoothed, smoothed
 from pneumo_ros.units import LINE, TURN
 
@@ -164,6 +165,11 @@ class Run:
         """Smoothed measured states, with velocity and acceleration."""
         further = {name: signal for name, signal in self.signals.items() if name != POSITION}
         return smoothed(self.sample_time, self.position, further)
+
+    @cached_property
+    def rests(self) -> NDArray[np.bool_]:
+        """Samples (n,) at which the piston rests."""
+        return resting(self.smoothed.motion[:, 0], self.noise[POSITION], self.sample_time)
 
     def sensed(self, chambers: Sequence[Chamber]) -> list[Chamber]:
         """Those chambers whose pressure a sensor measured: the others are not judged."""

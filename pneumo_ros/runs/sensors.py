@@ -7,14 +7,12 @@ from numpy.typing import NDArray
 from scipy.ndimage import shift
 
 from pneumo_ros.plant import Model
-from pneumo_ros.plant.commanded import readings_from
 from pneumo_ros.plant.compose import SENSED
-from pneumo_ros.plant.effect import LATE
 from pneumo_ros.plant.model import STEP
 from pneumo_ros.plant.reach import written_by
 from pneumo_ros.plant.sensing import sense
 from pneumo_ros.runs.crossings import Crossing, crossings, play_of
-from pneumo_ros.runs.rests import resting
+from pneumo_ros.runs.readings import INVERTED, must_drive
 from pneumo_ros.runs.run import PARTS, POSITION, Run
 from pneumo_ros.runs.smooth import HALF_WIDTH, smooth
 
@@ -23,7 +21,6 @@ Index = NDArray[np.int64]
 # frames (lanes, n, frame) and lane numbers -> states (lanes, n, own), some of those beside the frame's
 Drive = Callable[[Array, Index], Array]
 
-INVERTED = *LATE, "play"  # roles of parameters that say how a reading is inverted
 STIFFNESS, STATIC = "lugre_friction.bristle_stiffness", "lugre_friction.static_friction"
 _ITERATIONS = 2  # at most: the fixed point of a delay tau does not hold for motion faster than 1 / tau (rad/s)
 _AT_REST = 10  # at most, without their own states: each step leaves a share of the error that is the gain's
@@ -52,21 +49,21 @@ def driven(model: Model, frame: Array, run: Run) -> tuple[Array, Array]:
     states what was measured: the position makes good what inverting its sensor left.
     """
     parts = parts_of(model) if run.sample_time < SHORT else PARTS
-    rest, measured = model.state()[frame.shape[1] :], frame[:, 0]
+    rest = model.state()[frame.shape[1] :]
     held, step = run.averaged(model.inputs, parts), STEP if parts == PARTS else longest_step(model, run, parts)
 
     def follow(given: Array) -> tuple[Array, Array]:
         return model.follow(given, held, rest, sample_time=run.sample_time, step=step, start=run.begin, parts=parts)
 
-    if not model.composition.true_sensors:
-        names = model.states[frame.shape[1] :]
-        (frame,) = corrected_lanes(
-            model, frame, run, None, lambda given, _: follow(given[0])[0][None, :, -len(names) :], names, _ENOUGH
-        )
-    states, means = follow(frame)
-    if not model.composition.true_sensors:
-        frame, own = np.split(states[None], [frame.shape[1]], axis=2)
-        states[:, 0] = measured + taken_back(model, frame, own, names, None, run)[0, :, 0]
+    if model.composition.true_sensors:
+        return follow(frame)
+    names = model.states[frame.shape[1] :]
+    (true,) = corrected_lanes(
+        model, frame, run, None, lambda given, _: follow(given[0])[0][None, :, -len(names) :], names, _ENOUGH
+    )
+    states, means = follow(true)
+    along, own = np.split(states[None], [frame.shape[1]], axis=2)
+    states[:, 0] = frame[:, 0] + taken_back(model, along, own, names, None, run)[0, :, 0]
     return states, means
 
 
@@ -106,7 +103,7 @@ def corrected_lanes(
     given = np.repeat(frame[None], len(before), axis=0)
     for lane in np.flatnonzero(before.any(axis=(1, 2))):
         given[lane] = shifted(frame, before[lane], run.sample_time)
-    steps = _untold(model, parameters)
+    steps = must_drive(model, model.values[None] if parameters is None else parameters, untold=True)
     if parameters is not None:
         given[~finite & ~steps] = np.nan
     moving = np.flatnonzero(steps)
@@ -126,20 +123,6 @@ def corrected_lanes(
     return given
 
 
-def _untold(model: Model, parameters: Array | None) -> NDArray[np.bool_]:
-    """Lanes (lanes,) in which an effect acts whose readings depend on states by more than the roles of parameters."""
-    own = model.values[None] if parameters is None else parameters
-    names, states, found = list(model.parameters), set(model.states[model.frame :]), np.zeros(len(own), dtype=bool)
-    for effect in model.composition.effects:
-        reads = readings_from(effect, SENSED)
-        keys = [key for key in effect.parameters if key in reads]
-        known = effect.states.keys() if keys and all(effect.parameters[key].role in INVERTED for key in keys) else set()
-        if (reads & states) - known:
-            differs = [own[:, names.index(f"{effect.name}.{key}")] != effect.parameters[key].neutral for key in keys]
-            found |= np.any(differs, axis=0) if keys else True
-    return found
-
-
 def inverted(model: Model, frame: Array, parameters: Array | None, run: Run) -> Array:
     """What to add to the readings (lanes, n, sensed) for what the roles of their effects' parameters say.
 
@@ -151,7 +134,7 @@ def inverted(model: Model, frame: Array, parameters: Array | None, run: Run) -> 
     own = model.values[None] if parameters is None else parameters
     delays, lags, plays = (by_role(model, own, role) for role in INVERTED)
     found, time = np.zeros((len(delays), len(frame), delays.shape[1])), run.sample_time * np.arange(len(frame))
-    known = dict[bytes, list[Crossing]]()  # of a reading: lanes differ in the width of its play
+    known = dict[tuple[float, ...], list[Crossing]]()  # of a reading: most lanes differ in other parameters
     held = bent(model, frame, run) if plays.any() else None
     for lane, k in zip(*np.nonzero((delays > 0.0) | (lags > 0.0) | (plays > 0.0)), strict=True):
         state = model.composition.sensed[k]
@@ -165,9 +148,9 @@ def inverted(model: Model, frame: Array, parameters: Array | None, run: Run) -> 
             own_times += lags[lane, k] * smooth(own_times, run.sample_time, HALF_WIDTH, 3, 1)
         found[lane, :, k] = own_times - reading
         if held and plays[lane, k] > 0.0:
-            if (key := own_times.tobytes()) not in known:
+            if (key := (k, late, lags[lane, k])) not in known:
                 noise = run.noise[POSITION if state == "y" else f"pressure_{state[2:]}_pa"]
-                known[key] = crossings(own_times, run.sample_time, noise, resting(run))
+                known[key] = crossings(own_times, run.sample_time, noise, run.rests)
             found[lane, :, k] += play_of(known[key], plays[lane, k], *held)
     return found
 

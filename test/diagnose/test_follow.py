@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from identify.making import own
 
-from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of, sensing, unsensed
+from pneumo_ros.diagnose.follow import alike_sensors, follow_each, frame_of, unsensed
 from pneumo_ros.plant import Model, load_model
+from pneumo_ros.runs.readings import must_drive, sensing
 
 SENSORS = ("position_sensor_delay", "pressure_sensor_offset")
 MODEL, _, RUN = own("steps", seconds=3.0)
@@ -89,7 +90,7 @@ def test_only_sensors_with_states_of_their_own_have_to_be_driven() -> None:
     rows[:2, delay] = 0.0
     rows[0, offset] = 0.0
     assert sensing(LATE, rows).tolist() == [False, True, True]
-    assert sensing(LATE, rows, with_states=True).tolist() == [False, False, True]
+    assert must_drive(LATE, rows).tolist() == [False, False, True]
 
 
 def test_along_corrected_states_a_machine_has_true_sensors_unless_it_reads_them(tmp_path: Path) -> None:

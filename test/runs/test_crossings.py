@@ -6,7 +6,7 @@ import pytest
 from pneumo_ros.runs.crossings import crossings, play_of
 
 DT, NOISE, WIDTH = 1e-3, 5e-6, 4e-4
-MOVES = np.zeros(2000, dtype=bool)  # rests that nobody tells of
+UNTOLD = np.zeros(2000, dtype=bool)  # rests that nobody tells of
 
 
 def moved(acceleration: float, speed: float = 0.1) -> np.ndarray:
@@ -33,28 +33,24 @@ def test_the_play_is_crossed_before_the_sensor_moves(acceleration: float) -> Non
     position = moved(acceleration)
     reading = read(position, WIDTH)
     noisy = reading + np.random.default_rng(0).normal(0.0, NOISE, len(reading))
-    found = crossings(noisy, DT, NOISE, MOVES)
+    found = crossings(noisy, DT, NOISE, UNTOLD)
     assert [one.direction for one in found] == [1.0, -1.0]
-    assert (
-        np.sqrt(np.mean((play_of(found, WIDTH, np.zeros(len(position)), 0.0) - (position - reading)) ** 2))
-        < 0.02 * WIDTH
-    )
+    play = play_of(found, WIDTH, np.zeros(len(position)), 0.0)
+    assert np.sqrt(np.mean((play - (position - reading)) ** 2)) < 0.02 * WIDTH
 
 
 def test_it_ends_at_the_speed_that_takes_the_sensor_along() -> None:
     acceleration = 4.0
-    found = crossings(read(moved(acceleration), WIDTH), DT, NOISE, MOVES)
-    ways = 0.5 * WIDTH, WIDTH  # first from the middle of the play
-    assert [one.speed / DT for one in found] == pytest.approx(
-        [np.sqrt(2.0 * acceleration * way) for way in ways], rel=0.05
-    )
+    found = crossings(read(moved(acceleration), WIDTH), DT, NOISE, UNTOLD)
+    ways = np.array([0.5 * WIDTH, WIDTH])  # first from the middle of the play
+    assert [one.speed / DT for one in found] == pytest.approx(np.sqrt(2.0 * acceleration * ways), rel=0.05)
 
 
 def test_noise_at_rest_and_the_kink_of_a_start_are_no_reversals() -> None:
     ramp = 0.5 * np.maximum(np.arange(2000) * DT - 1.0, 0.0)  # at once at 0.5 m/s
     noisy = ramp + np.random.default_rng(1).normal(0.0, NOISE, len(ramp))
-    assert [one.direction for one in crossings(noisy, DT, NOISE, MOVES)] == [1.0]
-    assert not crossings(noisy[:900], DT, NOISE, MOVES[:900])
+    assert [one.direction for one in crossings(noisy, DT, NOISE, UNTOLD)] == [1.0]
+    assert not crossings(noisy[:900], DT, NOISE, UNTOLD[:900])
 
 
 def test_a_piston_that_rests_gives_way_within_the_play() -> None:
